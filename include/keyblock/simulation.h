@@ -212,7 +212,7 @@ class KEYBLOCK_API Simulation {
   [[nodiscard]] std::array<double, 2> ground_acceleration() const;
   [[nodiscard]] std::vector<SpringState> springs() const;
   [[nodiscard]] std::vector<AppliedForce> forces() const;
-  /// J per metre thickness, by name: kinetic, strain, gravity, contact, friction, damping, input, numerical, radiated.
+  /// J per metre thickness, by name: kinetic, strain, gravity, contact, friction, damping, input, numerical, radiated, water.
   [[nodiscard]] std::vector<std::pair<std::string, double>> energy() const;
 
   /// Replaces all velocities. The work that this does is Energy::input. Throws InputError for another number of them.

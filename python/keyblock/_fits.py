@@ -53,6 +53,7 @@ _MODEL = {
     "contacts/normal": "c2",
     "contacts/position": "c2",
     "contacts/state": "c",
+    "contacts/water_pressure": "c",
     "contacts/time": "s",
     "contacts/stage": "s",
     "contacts/step": "s",

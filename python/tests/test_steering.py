@@ -20,7 +20,7 @@ core = optional("keyblock._core")
 
 def balance(sim: kb.Simulation) -> float:
     e = sim.energy
-    return e["kinetic"] + e["strain"] + e["gravity"] + e["contact"] + e["friction"] + e["damping"] + e["numerical"] + e["radiated"] - e["input"]
+    return e["kinetic"] + e["strain"] + e["gravity"] + e["contact"] + e["friction"] + e["damping"] + e["numerical"] + e["radiated"] - e["input"] - e["water"]
 
 
 def test_a_force_carries_a_block_and_its_work_is_in_the_balance() -> None:

@@ -186,7 +186,8 @@ std::vector<std::pair<std::string, double>> Simulation::energy() const {
   const simulation::Energy e = parts_->runner().energy();
   return {{"kinetic", e.kinetic}, {"strain", e.strain},       {"gravity", e.gravity},
           {"contact", e.contact}, {"friction", e.friction},   {"damping", e.damping},
-          {"input", e.input},     {"numerical", e.numerical}, {"radiated", e.radiated}};
+          {"input", e.input},     {"numerical", e.numerical}, {"radiated", e.radiated},
+          {"water", e.water}};
 }
 
 }  // namespace keyblock

@@ -4,6 +4,7 @@
 
 #include "coupling/facets.h"
 #include "model/model.h"
+#include "model/state.h"
 
 namespace keyblock::dynamics {
 
@@ -25,6 +26,15 @@ void add_weights(const Model& model, const State& state, const Drive& drive, std
   for (const auto& coupling : model.couplings) {
     if (const ForceScale* scale = coupling->force_scale()) scale->add_weights(model, state, drive, weight);
   }
+}
+
+WaterOfModel water_of(const Model& model, const State& state) {
+  for (std::size_t k = 0; k < model.couplings.size(); ++k) {
+    const StillWater* water = model.couplings[k]->still_water();
+    if (water == nullptr) continue;
+    return {water, k < state.couplings.size() ? state.couplings[k] : std::span<const double>{}};
+  }
+  return {};
 }
 
 }  // namespace keyblock::dynamics

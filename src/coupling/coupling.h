@@ -23,6 +23,7 @@ class Points;
 class RowOwners;
 class StagedSupports;
 struct State;
+class StillWater;
 
 /// A material point of a block, by the block's basis functions there.
 struct MaterialPoint {
@@ -158,6 +159,7 @@ class Coupling {
   [[nodiscard]] virtual const StagedSupports* staged_supports() const { return nullptr; }
   [[nodiscard]] virtual const FarField* far_field() const { return nullptr; }
   [[nodiscard]] virtual const ForceScale* force_scale() const { return nullptr; }
+  [[nodiscard]] virtual const StillWater* still_water() const { return nullptr; }
 
   /// Adds the blocks that it holds to the ground.
   virtual void add_held_blocks(std::vector<int>& /*blocks*/) const {}

@@ -2,11 +2,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "coupling/rock_column.h"
 #include "geometry/vec2.h"
 
-/// What only some couplings are (Coupling::staged_supports, far_field, force_scale).
+/// What only some couplings are (Coupling::staged_supports, far_field, force_scale, still_water).
 namespace keyblock::dynamics {
 
 struct Drive;
@@ -49,6 +52,51 @@ class ForceScale {
   virtual void add_weights(const Model& model, const State& state, const Drive& drive,
                            std::span<double> weight) const = 0;
 };
+
+/// A force at a vertex of the surface.
+struct VertexForce {
+  int vertex = 0;
+  Vec2 force;  ///< N per thickness
+};
+
+/// A place on an edge of the surface, before the run.
+struct EdgePlace {
+  int edge = 0;
+  Vec2 place;
+};
+
+/// What water does to the blocks that move.
+struct WaterTotals {
+  bool acts = false;
+  std::string name;               ///< of the water that acts; it may have none
+  double largest_pressure = 0.0;  ///< Pa
+  double wet = 0.0;               ///< m of edges
+  double drained = 0.0;  ///< m of edges below its table that are dry: along openings, or as it has run out
+  std::vector<std::pair<std::string, Vec2>> forces;  ///< N per thickness, by the names of its elements
+};
+
+/// Water in joints and around blocks.
+class StillWater {
+ public:
+  virtual ~StillWater() = default;
+  /// Pa, at places on edges, where they were before the run; 0 where it is dry. memory: empty before the first step.
+  [[nodiscard]] virtual std::vector<double> pressures(const Model& model, const State& state,
+                                                      std::span<const double> memory,
+                                                      std::span<const EdgePlace> places) const = 0;
+  /// On the wall of an excavation that is still closed.
+  [[nodiscard]] virtual std::vector<VertexForce> wall_forces(const Model& model, const State& state,
+                                                             std::span<const double> memory,
+                                                             int excavation) const = 0;
+  [[nodiscard]] virtual WaterTotals totals(const Model& model, const State& state,
+                                           std::span<const double> memory) const = 0;
+};
+
+/// Of a model, with its memory in a state; null: there is none.
+struct WaterOfModel {
+  const StillWater* water = nullptr;
+  std::span<const double> memory;
+};
+[[nodiscard]] WaterOfModel water_of(const Model& model, const State& state);
 
 /// Of all couplings of a model.
 void add_weights(const Model& model, const State& state, const Drive& drive, std::span<double> weight);

@@ -7,19 +7,34 @@
 
 #include "contact/law.h"
 #include "core/index.h"
+#include "coupling/facets.h"
 
 namespace keyblock::dynamics {
 
 namespace {
 
-/// The joint carries the stress of the rock from the start: traction on block a is −σ n. J per thickness.
-double carry_stress(const Model& model, const contact::JointLaw& law, contact::Contact& c) {
+/// Where contacts are on their edges, before the first step.
+Vec2 place_of(const Model& model, const contact::Contact& c) {
   const contact::Surface& surface = model.surface;
-  const int end = surface.next[at(c.edge)];
-  const Vec2 where = lerp(surface.position[at(c.edge)], surface.position[at(end)], c.position);
-  const block::Stress s = block::in_situ_at(model.in_situ, where);
+  return lerp(surface.position[at(c.edge)], surface.position[at(surface.next[at(c.edge)])], c.position);
+}
+
+/// Pa, of the water in the joint at each contact; empty where there is no water.
+std::vector<double> water_pressures(const Model& model, const State& state,
+                                    std::span<const contact::Contact> contacts) {
+  const WaterOfModel water = water_of(model, state);
+  if (water.water == nullptr) return {};
+  std::vector<EdgePlace> places;
+  for (const contact::Contact& c : contacts) places.push_back({c.edge, place_of(model, c)});
+  return water.water->pressures(model, state, water.memory, places);
+}
+
+/// The joint carries the stress of the rock from the start, less what the water in it has of that, Pa: traction on block a is −σ n. J per
+/// thickness.
+double carry_stress(const Model& model, const contact::JointLaw& law, double of_water, contact::Contact& c) {
+  const block::Stress s = block::in_situ_at(model.in_situ, place_of(model, c));
   const Vec2 traction{s.xx * c.normal.x + s.xy * c.normal.y, s.xy * c.normal.x + s.yy * c.normal.y};
-  const double normal = std::max(0.0, -dot(traction, c.normal) * c.length);
+  const double normal = std::max(0.0, (-dot(traction, c.normal) - of_water) * c.length);
   const contact::Strength peak = law.strength(0.0, true);
   const double bound =
       law.fused ? HUGE_VAL
@@ -53,10 +68,12 @@ void make_pieces(const Model& model, const std::vector<std::size_t>& in_place,
 
 }  // namespace
 
-double begin_contacts(const Model& model, const contact::Tolerances& tolerances,
+double begin_contacts(const Model& model, const State& state, const contact::Tolerances& tolerances,
                       std::span<contact::Contact> contacts, contact::JointPieces& pieces) {
   double stored = 0.0;
   std::vector<std::size_t> in_place;
+  const std::vector<double> of_water =
+      model.in_situ ? water_pressures(model, state, contacts) : std::vector<double>{};
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     contact::Contact& c = contacts[k];
     if (std::abs(c.gap) > tolerances.in_place || c.length <= tolerances.rounding) continue;
@@ -67,7 +84,7 @@ double begin_contacts(const Model& model, const contact::Tolerances& tolerances,
       c.memory.bond_length = c.length;
       c.memory.offset = -c.gap;  // a gap that is there does not pull
     }
-    if (model.in_situ) stored += carry_stress(model, law, c);
+    if (model.in_situ) stored += carry_stress(model, law, of_water.empty() ? 0.0 : of_water[k], c);
   }
   make_pieces(model, in_place, contacts, pieces);
   return stored;

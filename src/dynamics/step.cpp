@@ -71,7 +71,7 @@ void Stepper::start(State& state) {
   std::fill(state.moved.begin(), state.moved.end(), 0.0);
   finder_.find_at_rest(motion_, state);
   state.contact_energy +=
-      begin_contacts(model_, finder_.tolerances(), finder_.contacts(), state.contacts.pieces);
+      begin_contacts(model_, state, finder_.tolerances(), finder_.contacts(), state.contacts.pieces);
   contact::keep_memory(finder_.contacts(), state.contacts, team_);
   contact_coupling_.begin_step(finder_.contacts(), {}, {}, {});
   systems_.make_room(model_, contact_coupling_, state);

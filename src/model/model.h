@@ -77,8 +77,10 @@ struct Model {
   Vec2 gravity;  ///< m/s²
   /// m/s², acceleration of the ground that static steps stand for: each block has the inertia force of it as a load.
   Vec2 static_ground;
-  bool joints_wear = true;  ///< slip wears the joints whose law has memory, in the stage that runs
-  double block_size = 1.0;  ///< m, √(mean area of the blocks that move)
+  int water = -1;             ///< which of its waters acts in the stage that runs; −1: none
+  bool water_drains = false;  ///< it runs out of joints that have opened, in the stage that runs
+  bool joints_wear = true;    ///< slip wears the joints whose law has memory, in the stage that runs
+  double block_size = 1.0;    ///< m, √(mean area of the blocks that move)
   SolverOptions solver;
 
   std::size_t unknowns = 0;      ///< coefficients of the blocks that are not fixed; they come first

@@ -15,6 +15,7 @@ struct EnergyLedger {
   double input = 0.0;      ///< done by ground motion, loads and moved supports
   double numerical = 0.0;  ///< dissipated by the time integration
   double radiated = 0.0;   ///< carried away by waves through the boundary
+  double water = 0.0;      ///< done by the pressure of water
 };
 
 /// What rock that is excavated did to a vertex of the wall that it leaves.

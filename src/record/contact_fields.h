@@ -30,6 +30,8 @@ inline constexpr ContactField contact_fields[] = {
     {"normal_force", "N/m", "per metre of thickness, compression positive", &ContactRecord::normal_force,
      &ContactParts::forces},
     {"shear_force", "N/m", "per metre of thickness; on block_a along (normal_y, -normal_x)",
-     &ContactRecord::shear_force, &ContactParts::forces}};
+     &ContactRecord::shear_force, &ContactParts::forces},
+    {"water_pressure", "Pa", "of the water in the joint, beside which the forces are effective",
+     &ContactRecord::water_pressure, &ContactParts::forces, false, true}};
 
 }  // namespace keyblock::simulation

@@ -115,6 +115,7 @@ struct ContactRecord {
   double normal_force = 0.0;        ///< N per metre thickness, compression positive
   double shear_force = 0.0;         ///< the same; against perpendicular(normal) on block_a
   cutting::EdgeLabel label;         ///< of the edge
+  double water_pressure = 0.0;  ///< Pa, of the water in the joint: the forces are what it leaves to the rock
   // Of a running model alone; results do not keep them.
   int vertex = 0, edge = 0;              ///< of the surface
   double friction = 0.0;                 ///< coefficient
@@ -155,8 +156,17 @@ struct HistoryRow {
       elements;  ///< of histories that follow one; forces and ways are NaN where it is not there
 };
 
+/// What water does to the blocks that move.
+struct WaterRecord {
+  std::string name;               ///< of the water that acts; it may have none
+  double largest_pressure = 0.0;  ///< Pa
+  double wet = 0.0;               ///< m of edges of blocks
+  double drained = 0.0;  ///< m of edges below the table that are dry: along openings, or as it has run out
+  std::vector<std::pair<std::string, Vec2>> forces;  ///< N per thickness, by the names of its elements
+};
+
 /// Energies in J per metre thickness. Losses and inputs accumulate from the start of the first stage.
-/// kinetic + strain + gravity + contact + friction + damping + radiated + numerical − input = residual ≈ 0.
+/// kinetic + strain + gravity + contact + friction + damping + radiated + numerical − input − water = residual ≈ 0.
 struct Energy {
   double kinetic = 0.0;
   double strain = 0.0;
@@ -170,6 +180,7 @@ struct Energy {
   double residual_ratio =
       0.0;                ///< |residual| over the largest term, or over what nobody sees (energy_audit.cpp)
   double radiated = 0.0;  ///< carried away by waves through a seismic boundary
+  double water = 0.0;     ///< work of the pressure of water
 };
 
 /// Energy that the time integration makes rather than dissipates: how far Energy::numerical has come down from its highest value before in a
@@ -366,6 +377,7 @@ struct RunRecord {
   std::vector<StageRecord> stages;
   std::vector<PlaneRecord> planes;      ///< beside the model, from left to right and from below
   std::vector<ElementRecord> elements;  ///< springs and supports, at the end
+  std::optional<WaterRecord> water;     ///< at the end, where some acts
   bool interrupted = false;
   Profile profile;  ///< of this run; of the part after resuming, if it was resumed
 };

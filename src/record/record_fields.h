@@ -19,7 +19,9 @@ inline constexpr std::pair<const char*, double Energy::*> energy_fields[] = {
     {"input", &Energy::input},
     {"numerical", &Energy::numerical},
     {"residual_ratio", &Energy::residual_ratio},
-    {"radiated", &Energy::radiated}};  // results of earlier versions do not have it
+    // Results of earlier versions do not have these.
+    {"radiated", &Energy::radiated},
+    {"water", &Energy::water}};
 static_assert(sizeof(Energy) == std::size(energy_fields) * sizeof(double), "a term of the energy is missing");
 
 /// Quantities of a history point with their units, in the order of every table.

@@ -39,6 +39,8 @@ struct Stage {
   /// What strength of joints is divided by while the stage lasts, but that of the frame; of which sets, maps or `joints`, by name: of all.
   double strength_factor = 1.0;
   std::vector<std::string> strength_of;
+  std::optional<int>
+      water;  ///< of RunSetup::waters, from this stage on; −1: none. Not given: as before (water_in)
   /// Whether slip counts for the strength of joints. Not given: in every stage but those that turn gravity on (wears_joints).
   std::optional<bool> wears_joints;
   double tolerance = 1e-4;  ///< settle: largest residual of a block over its weight at equilibrium

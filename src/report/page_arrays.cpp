@@ -197,7 +197,7 @@ void add_steps(const results::RunData& run, ArrayPack& pack) {
   for (const simulation::StepRow& row : run.steps) {
     const simulation::Energy& e = row.energy;
     const double residual = e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping +
-                            e.radiated + e.numerical - e.input;
+                            e.radiated + e.numerical - e.input - e.water;
     // In the order of step_columns in page_header.cpp.
     const double values[] = {double(row.stage),
                              row.time,
@@ -215,6 +215,7 @@ void add_steps(const results::RunData& run, ArrayPack& pack) {
                              e.radiated,
                              e.numerical,
                              e.input,
+                             e.water,
                              residual};
     curves.columns.resize(std::size(values));
     curves.x.push_back(static_cast<double>(row.step));

@@ -130,7 +130,7 @@ std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
                             {"step_columns",
                              {"stage", "time", "iterations", "step_size", "penetration", "max_displacement",
                               "closed_contacts", "kinetic", "strain", "gravity", "contact", "friction",
-                              "damping", "radiated", "numerical", "input", "residual"}},
+                              "damping", "radiated", "numerical", "input", "water", "residual"}},
                             {"damage_measures", results::damage_measures_json()},
                             {"arrays", entries}};
   return script_json(header.dump(-1, ' ', false, ordered_json::error_handler_t::replace));

@@ -79,6 +79,28 @@ ordered_json elements_json(const std::vector<ElementRecord>& elements, Vec2 orig
   return json;
 }
 
+ordered_json water_json(const simulation::WaterRecord& water) {
+  ordered_json forces = ordered_json::array();
+  for (const auto& [name, force] : water.forces)
+    forces.push_back({{"name", name}, {"force_n_m", place(force)}});
+  return {{"name", water.name},
+          {"largest_pressure_pa", water.largest_pressure},
+          {"wet_m", water.wet},
+          {"drained_m", water.drained},
+          {"forces", std::move(forces)}};
+}
+
+simulation::WaterRecord read_water(const ordered_json& json) {
+  simulation::WaterRecord water;
+  json.at("name").get_to(water.name);
+  json.at("largest_pressure_pa").get_to(water.largest_pressure);
+  json.at("wet_m").get_to(water.wet);
+  json.at("drained_m").get_to(water.drained);
+  for (const ordered_json& one : json.at("forces"))
+    water.forces.emplace_back(one.at("name").get<std::string>(), read_place(one.at("force_n_m")));
+  return water;
+}
+
 std::vector<ElementRecord> read_elements(const ordered_json& json) {
   std::vector<ElementRecord> elements;
   for (const ordered_json& one : json) {

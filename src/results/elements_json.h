@@ -22,6 +22,10 @@ void read_element_names(const nlohmann::ordered_json& json, simulation::ModelRec
 nlohmann::ordered_json elements_json(const std::vector<simulation::ElementRecord>& elements, Vec2 origin);
 /// Throws nlohmann::json::exception for what is missing or has another type.
 std::vector<simulation::ElementRecord> read_elements(const nlohmann::ordered_json& json);
+/// What water does to blocks.
+nlohmann::ordered_json water_json(const simulation::WaterRecord& water);
+/// Throws likewise.
+simulation::WaterRecord read_water(const nlohmann::ordered_json& json);
 /// elements.csv; empty where there are none.
 std::string element_table(const std::vector<simulation::ElementRecord>& elements, Vec2 origin);
 /// element_frames.csv, a row for each frame and element; likewise.

@@ -175,8 +175,8 @@ ordered_json energy_json(const simulation::Energy& energy) {
 simulation::Energy read_energy(const ordered_json& json) {
   simulation::Energy energy;
   for (const auto& [name, member] : simulation::energy_fields) {
-    if (member != &simulation::Energy::radiated || json.contains(name))
-      energy.*member = number(json.at(name));
+    const bool is_newer = member == &simulation::Energy::radiated || member == &simulation::Energy::water;
+    if (!is_newer || json.contains(name)) energy.*member = number(json.at(name));
   }
   return energy;
 }

@@ -144,6 +144,7 @@ std::string run_json(const simulation::RunRecord& run) {
                           {"made_share", run.made.share()},
                           {"planes", planes_json(run.planes, {})},
                           {"elements", elements_json(run.elements, {})},
+                          {"water", run.water ? water_json(*run.water) : ordered_json()},
                           {"interrupted", run.interrupted}};
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -170,6 +171,7 @@ simulation::RunRecord read_run_json(const std::string& text) {
     }
     if (json.contains("planes")) run.planes = read_planes(json.at("planes"));
     if (json.contains("elements")) run.elements = read_elements(json.at("elements"));
+    if (json.contains("water") && !json.at("water").is_null()) run.water = read_water(json.at("water"));
     json.at("interrupted").get_to(run.interrupted);
     return run;
   });

@@ -179,6 +179,7 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"max_area_change", run.max_area_change},
       {"boundary", boundary(model, run)},
       {"elements", elements_json(run.elements, model.origin)},
+      {"water", run.water ? water_json(*run.water) : ordered_json()},
       {"damping", damping(model)},
       {"energy", energy_json(run.energy)},
       {"energy_warnings", simulation::energy_warnings(run)},

@@ -21,6 +21,7 @@
 #include "scenario/shaking_checks.h"
 #include "scenario/size_checks.h"
 #include "scenario/stage_steps.h"
+#include "scenario/water_checks.h"
 #include "simulation/build_boundary.h"
 #include "simulation/damping_table.h"
 #include "simulation/feasibility.h"
@@ -71,6 +72,7 @@ void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
   for (loading::Support& support : setup.supports) {
     for (Vec2& p : support.points) p -= origin;
   }
+  setup.waters = waters_of(scenario, origin);
   setup.springs = scenario.springs;
   for (loading::Spring& spring : setup.springs) {
     spring.from -= origin;
@@ -199,7 +201,8 @@ void place_rock(const Scenario& scenario, const BlockModel& blocks, RunSetup& se
     Ring outline = blocks.outlines[k];
     for (Vec2& p : outline) p -= origin;
     const ExcavationSpec& spec = scenario.excavations[k];
-    setup.excavations.push_back({spec.name, std::move(outline), pressure_of(scenario, spec)});
+    setup.excavations.push_back(
+        {spec.name, std::move(outline), pressure_of(scenario, spec), spec.filled.value_or(false)});
   }
 }
 

@@ -84,6 +84,7 @@ class Facts {
             fmt::format("divided by {}{}", number(stage.strength_factor),
                         stage.strength_of.empty() ? "" : ": " + joined(stage.strength_of)));
     }
+    for (const WaterSpec& spec : scenario_.waters) water(spec);
     loads();
     if (!scenario_.supports.empty()) add("supports", std::to_string(scenario_.supports.size()));
     if (!scenario_.springs.empty()) add("springs", std::to_string(scenario_.springs.size()));
@@ -124,6 +125,22 @@ class Facts {
       add(fmt::format("load {} on “{}”", k + 1, load.block), std::move(text));
     }
     if (loads.size() > most_loads) add("more loads", std::to_string(loads.size() - most_loads));
+  }
+
+  void water(const WaterSpec& spec) {
+    const auto [low, high] = std::ranges::minmax(spec.table, {}, &Vec2::y);
+    std::string text = low.y == high.y ? fmt::format("level at {} m", number(low.y))
+                                       : fmt::format("table from {} to {} m", number(low.y), number(high.y));
+    const double weight = -spec.density * scenario_.gravity.y;
+    text += fmt::format(", γw {} kN/m³", number(weight / 1e3));
+    if (spec.sets)
+      text +=
+          fmt::format(", in {} of {} sets and maps", std::ranges::count(*spec.sets, true), spec.sets->size());
+    for (const simulation::Stage& stage : scenario_.stages)
+      if (stage.water && *stage.water >= 0 &&
+          scenario_.waters[static_cast<std::size_t>(*stage.water)].name == spec.name)
+        text += fmt::format(", from “{}” on", stage.name);
+    add(spec.name.empty() ? "water" : quoted("water", spec.name), std::move(text));
   }
 
   void stress() {

@@ -44,7 +44,7 @@ std::string key_unit(const std::string& path) {
   auto section = titled("[" + first + "]");
   if (section == sections.end()) {
     section = titled("[[" + first + "]]");
-    begin = 2;  // after the name or the place of the element
+    begin = segments->size() == 2 ? 1 : 2;  // after the name or the place of the element, if it has one
   }
   if (section == sections.end()) {
     section = titled("");

@@ -52,6 +52,7 @@ struct SectionReference {
   std::string title;  ///< `[rock]`, `[[joint_set]]`; empty for the keys outside all tables
   std::string meaning;
   std::vector<KeyReference> keys;
+  bool may_be_alone = false;  ///< of a list of tables: one table may stand in its place
 };
 
 /// Every section and key, in the order in which they are read.

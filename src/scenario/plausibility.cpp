@@ -16,6 +16,7 @@
 #include "scenario/sections.h"
 #include "scenario/shaking_checks.h"
 #include "scenario/strength_checks.h"
+#include "scenario/water_checks.h"
 #include "simulation/base.h"
 
 namespace keyblock::scenario {
@@ -55,6 +56,7 @@ class Plausibility {
     check_tolerances();
     check_sizes();
     add_load_warnings(scenario_, warnings_);
+    add_water_warnings(scenario_, warnings_);
     return std::move(warnings_);
   }
 

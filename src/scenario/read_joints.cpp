@@ -161,12 +161,13 @@ constexpr JointDefaults joint_defaults{true,      "0", "", "20 young per metre",
 constexpr JointDefaults set_defaults{false,         "of [joints]", "of [joints]",
                                      "of [joints]", "of [joints]", "of [joints]; else friction"};
 
-void read_set_factor(TableReader& t, JointKeys& joints) {
+void read_set_keys(TableReader& t, JointKeys& joints) {
   t.number("strength_factor", joints.strength_factor,
            {.meaning = "Its strength is divided by it, that of all other joints is not.",
             .above = 0.0,
             .fallback = "of [joints]",
             .usual = &usual::strength_factor});
+  t.boolean("dry", joints.dry, {.meaning = "Its joints hold no water."});
 }
 
 double given(const std::optional<double>& own, const std::optional<double>& standard) {
@@ -231,7 +232,7 @@ void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standar
   read_distribution(t, "length", set.length, false, "Length of a trace in the section.");
   read_distribution(t, "gap", set.gap, true, "Rock bridge between two traces on one line; 0: none.");
   read_joint_keys(t, spec.joints, set_defaults);
-  read_set_factor(t, spec.joints);
+  read_set_keys(t, spec.joints);
   check_joint_keys(t, spec.joints, standard);
 }
 
@@ -267,7 +268,7 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
           .fallback = "that of the file"});
   if (map.name.empty()) map.name = map.file.stem().string();
   read_joint_keys(t, map.joints, set_defaults);
-  read_set_factor(t, map.joints);
+  read_set_keys(t, map.joints);
   check_joint_keys(t, map.joints, standard);
 }
 

@@ -272,6 +272,7 @@ void read_loading(TableReader& root, Scenario& scenario) {
       {.meaning = "Stress before excavation. Without it the rock carries its own weight alone, and the "
                   "crown of an opening in cohesionless joints is marginal."},
       [&](TableReader& t) { read_in_situ(t, scenario); });
+  read_water(root, scenario);
   root.tables("motion", scenario.motions,
               {.meaning = "A motion of the base: a record with its components, or the acceleration in x and "
                           "y: rows, a sine, or a file."},

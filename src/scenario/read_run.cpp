@@ -193,6 +193,7 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
   read_stillness(t, stage, any || stage.kind != StageKind::settle, shake);
   read_equilibrium(t, stage, settle);
   read_strength(t, stage);
+  read_water_of_stage(t, stage, scenario);
   read_wear(t, stage, scenario);
 }
 

@@ -84,6 +84,12 @@ void read_excavation(TableReader& t, ExcavationSpec& spec) {
              .applies = round,
              .condition = "shape = \"circle\" or \"horseshoe\""});
   read_pressure(t, spec);
+  bool filled = false;
+  if (t.boolean(
+          "filled", filled,
+          {.meaning = "Once it is open, it stands full of the water of [water], which presses on its wall "
+                      "as in the joints behind it. Else its wall is drained."}))
+    spec.filled = filled;
 }
 
 loading::TimeTable read_prescribed(TableReader& t, std::string_view key) {

@@ -38,6 +38,7 @@ struct JointKeys {
   std::optional<double> friction, cohesion, tension, normal_stiffness, shear_stiffness;
   std::optional<double> residual_friction, residual_cohesion, weakening_slip;
   std::optional<double> strength_factor;  ///< tan(friction), cohesion and tension are divided by it
+  bool dry = false;                       ///< of a set or trace map: it holds no water
 
   /// Whether strength falls from a peak to what is left.
   [[nodiscard]] bool has_residual() const { return residual_friction || residual_cohesion || weakening_slip; }
@@ -92,6 +93,7 @@ struct ExcavationSpec {
       arch_height;  ///< horseshoe: rise of the circular arch over the walls; default width / 2
   simulation::SupportPressure pressure;                           ///< but what it is by stage
   std::vector<std::pair<std::string, double>> pressure_by_stage;  ///< Pa, from a stage on
+  std::optional<bool> filled;                                     ///< with water; not given: drained
   std::string path;
 };
 
@@ -103,6 +105,18 @@ struct BlockSpec {
   loading::TimeTable motion_x, motion_y;  ///< of a fixed block
   Vec2 velocity;
   double spin = 0.0;
+  std::string path;
+};
+
+/// What a stage says where no water is to act.
+constexpr const char* no_water = "none";
+
+/// [water]
+struct WaterSpec {
+  std::string name;                       ///< may be empty, of one that is alone
+  std::vector<Vec2> table;                ///< m, from left to right
+  double density = 1000.0;                ///< kg/m³
+  std::optional<std::vector<bool>> sets;  ///< of all joint sets, then of all trace maps: they hold it
   std::string path;
 };
 
@@ -218,6 +232,7 @@ struct Scenario {
   std::vector<loading::Load> loads;
   std::vector<loading::Support> supports;
   std::vector<loading::Spring> springs;
+  std::vector<WaterSpec> waters;
   std::vector<simulation::History> histories;
   std::vector<simulation::Stage> stages;    ///< indices are those of `excavations` and `motions`
   std::vector<simulation::Stage> left_out;  ///< stages after that of [safety]

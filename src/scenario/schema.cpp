@@ -142,7 +142,9 @@ std::string schema() {
     if (title.empty()) {
       root["properties"] = std::move(table["properties"]);
     } else if (title.starts_with("[[")) {
-      root["properties"][std::string(title.substr(2, title.size() - 4))] = list_of(std::move(table));
+      ordered_json list = list_of(table);
+      if (section.may_be_alone) list = {{"anyOf", {std::move(table), std::move(list)}}};
+      root["properties"][std::string(title.substr(2, title.size() - 4))] = std::move(list);
     } else if (title.starts_with('[')) {
       root["properties"][std::string(title.substr(1, title.size() - 2))] = std::move(table);
     } else {

@@ -29,6 +29,10 @@ void read_shapes(TableReader& root, Scenario& scenario);
 void read_boundary(TableReader& root, Scenario& scenario);
 /// [in_situ], [[motion]], [[load]], [[support]], [[spring]].
 void read_loading(TableReader& root, Scenario& scenario);
+/// [water], after all joints.
+void read_water(TableReader& root, Scenario& scenario);
+/// `water` of a stage.
+void read_water_of_stage(TableReader& t, simulation::Stage& stage, const Scenario& scenario);
 /// One [[motion]].
 void read_motion(TableReader& t, MotionSpec& motion);
 /// [time], [[stage]], [[history]], [damage], [output], and what read_solver() reads.

@@ -52,6 +52,12 @@ constexpr Synonym all_synonyms[] = {
     {"rotate angle", "rotation"},
     {"fix pinned", "fixed"},
     {"vel speed", "velocity"},
+    // Water
+    {"groundwater gwt phreatic pore porepressure pp waterpressure fluid", "water", true},
+    {"watertable piezo piezometric piezometricline phreaticline phreaticsurface level surface line", "table"},
+    {"height elevation waterlevel", "head"},
+    {"flooded", "filled", true},
+    {"drained", "dry filled"},
     // Stress
     {"insitu insitustress initialstress fieldstress", "in_situ", true},
     {"stress stresses initial", "in_situ"},
@@ -110,8 +116,8 @@ constexpr Explanation all_explanations[] = {
      "along their length, and dowels, are not in the program"},
     {"liner liners lining linings shotcrete beam beams struct steelset steelsets",
      "linings and beams are not in the program"},
-    {"water waterpressure porepressure pore pp groundwater watertable phreatic piezo fluid flow seepage",
-     "water is not in the program"},
+    {"flow seepage permeability conductivity aperture",
+     "flow of water in joints is not in the program; [water] is water at rest, below a table"},
     {"dilation dilatancy dilationangle jdil jdilation psi", "dilation of joints is not in the program"},
     {"ucs sigci gsi mi hoekbrown mohrcoulomb plastic plasticity yield failure compressivestrength",
      "the rock between the joints is elastic; its failure is not in the program"},

@@ -32,6 +32,7 @@ struct Rule {
   std::string_view group_meaning{};
   std::span<const KeyKind>
       kinds{};                   ///< of a key that may hold several, or of what may stand in place of a group
+  bool may_be_alone = false;     ///< of a list of tables: one table may stand in its place
   const Usual* usual = nullptr;  ///< what its numbers usually are; of a point and of rows their size
 };
 

@@ -340,7 +340,8 @@ void TableReader::describe_table(std::string_view key, const Rule& rule, bool li
     read(reader);
   };
   if (path_.empty()) {
-    sections.push_back({list ? "[[" + name + "]]" : "[" + name + "]", std::string(rule.meaning), {}});
+    sections.push_back(
+        {list ? "[[" + name + "]]" : "[" + name + "]", std::string(rule.meaning), {}, rule.may_be_alone});
     return describe(sections.size() - 1, "");
   }
   if (rule.group.empty()) {
@@ -388,6 +389,18 @@ bool TableReader::each_table(std::string_view key, const Rule& rule,
   }
   const Value* found = take(key, rule, {KeyKind::tables}, "list of tables", "");
   if (found == nullptr) return false;
+  const auto read_one = [&](const Value& item, const std::string& item_path) {
+    TableReader reader(context_, &item, item_path, 0, "");
+    read(reader);
+    reader.finish();
+    // Places in the list of names are those of what was read: one for each table, whatever its name is worth, and none for other elements.
+    const bool named = path_.empty();
+    if (named) context_.list_names[std::string(key)].push_back(item.name() == nullptr ? "" : *item.name());
+  };
+  if (rule.may_be_alone && found->is(Value::Type::table)) {
+    read_one(*found, path_of(key));
+    return true;
+  }
   if (!found->is(Value::Type::array)) {
     fail(key, describe(*found), "a list of tables",
          found->is(Value::Type::table) ? fmt::format("write [[{}]] with double brackets", path_of(key)) : "");
@@ -402,12 +415,7 @@ bool TableReader::each_table(std::string_view key, const Rule& rule,
       continue;
     }
     context_.positions[item_path] = item.where;
-    TableReader reader(context_, &item, item_path, 0, "");
-    read(reader);
-    reader.finish();
-    // Places in the list of names are those of what was read: one for each table, whatever its name is worth, and none for other elements.
-    const bool named = path_.empty();
-    if (named) context_.list_names[std::string(key)].push_back(item.name() == nullptr ? "" : *item.name());
+    read_one(item, item_path);
   }
   return true;
 }

@@ -58,6 +58,7 @@ inline constexpr OtherUnit times[] = {{"ms", 1e-3}};
 inline constexpr OtherUnit frequencies[] = {{"kHz", 1e3}, {"mHz", 1e-3}};
 
 inline constexpr Usual density{"kg/m3", 1e3, 4e3, 1.5e3, 3.5e3, densities};
+inline constexpr Usual water_density{"kg/m3", 500.0, 2e3, 9e2, 1.3e3, densities};
 inline constexpr Usual young{"Pa", 5e7, 1e12, 1e8, 2e11, pressures};
 inline constexpr Usual poisson{"", 0.01, 0.5, 0.1, 0.45};
 inline constexpr Usual stiffness{"Pa/m", 1e6, 1e14, 1e8, 1e13, stiffnesses};

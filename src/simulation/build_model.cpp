@@ -13,6 +13,7 @@
 #include "coupling/point_springs.h"
 #include "geometry/quadrature.h"
 #include "simulation/build_boundary.h"
+#include "simulation/build_water.h"
 #include "simulation/joint_laws.h"
 #include "simulation/outline.h"
 #include "simulation/refuse.h"
@@ -187,6 +188,7 @@ void add_couplings(const RunSetup& setup, Model& model) {
     model.couplings.push_back(std::make_shared<dynamics::FrameDamping>(std::move(*damping)));
   }
   if (auto walls = wall_loads(setup, model)) model.couplings.push_back(std::move(walls));
+  if (auto water = joint_water(setup, model)) model.couplings.push_back(std::move(water));
 }
 
 void add_prescribed_motions(const RunSetup& setup, Model& model) {
@@ -264,6 +266,7 @@ Model build_model(const RunSetup& setup) {
   add_loads(setup, model);
   add_couplings(setup, model);
   add_prescribed_motions(setup, model);
+  model.water = water_in(setup, 0);
   return model;
 }
 

@@ -162,8 +162,9 @@ bool has_sizes(const State& s, const Model& model) {
 }
 
 bool has_numbers(const State& s) {
-  const double numbers[] = {s.time,         s.last_step,        s.ledger.friction, s.ledger.damping,
-                            s.ledger.input, s.ledger.numerical, s.contact_energy,  s.support_energy};
+  const double numbers[] = {s.time,           s.last_step,        s.ledger.friction, s.ledger.damping,
+                            s.ledger.input,   s.ledger.numerical, s.ledger.radiated, s.ledger.water,
+                            s.contact_energy, s.support_energy};
   return all_finite(numbers) && s.time >= 0.0 && s.last_step >= 0.0 && are_counts({s.step}) &&
          all_finite(s.position) && all_finite(s.velocity) && all_finite(s.acceleration) &&
          all_finite(s.force) && all_finite(s.moved) && are_flags(s.acceleration_known);

@@ -27,7 +27,7 @@ double unseen_energy(const dynamics::Model& model) {
 double largest_but_numerical(const dynamics::Model& model, const Energy& e) {
   double largest = unseen_energy(model);
   for (const double term :
-       {e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.damping, e.radiated, e.input})
+       {e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.damping, e.radiated, e.input, e.water})
     largest = std::max(largest, std::abs(term));
   return largest;
 }
@@ -50,9 +50,10 @@ Energy energy_audit(const dynamics::Model& model, const dynamics::State& state, 
   e.numerical = ledger.numerical;
   e.radiated = ledger.radiated;
   e.input = ledger.input;
+  e.water = ledger.water;
   e.gravity = dynamics::gravity_energy(model, state) - initial;
   const double residual = e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping + e.radiated +
-                          e.numerical - e.input;
+                          e.numerical - e.input - e.water;
   const double largest = std::max(largest_but_numerical(model, e), std::abs(e.numerical));
   e.residual_ratio = residual == 0.0 ? 0.0 : std::abs(residual) / largest;  // no number where a term is none
   return e;

@@ -222,6 +222,7 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
   each_contact(stepper, [&](std::span<const ContactRecord> some) {
     frame.contacts.insert(frame.contacts.end(), some.begin(), some.end());
   });
+  put_water(state, frame.contacts);
   return frame;
 }
 
@@ -262,6 +263,15 @@ void Recorder::put_places(std::span<const contact::Contact> contacts, std::span<
     row.length = c.length;
     row.label = labels_[at(c.edge)];
   }
+}
+
+void Recorder::put_water(const dynamics::State& state, std::span<ContactRecord> to) const {
+  const dynamics::WaterOfModel water = dynamics::water_of(model_, state);
+  if (water.water == nullptr) return;
+  std::vector<dynamics::EdgePlace> places;
+  for (const ContactRecord& c : to) places.push_back({c.edge, model_.reference[at(c.vertex)]});
+  const std::vector<double> pressures = water.water->pressures(model_, state, water.memory, places);
+  for (std::size_t k = 0; k < to.size(); ++k) to[k].water_pressure = pressures[k];
 }
 
 bool Recorder::is_there(const Point& point) const {

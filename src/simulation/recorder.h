@@ -41,6 +41,7 @@ class Recorder {
   void orders_changed();
 
  private:
+  void put_water(const dynamics::State& state, std::span<ContactRecord> to) const;
   void put_places(std::span<const contact::Contact> contacts, std::span<ContactRecord> to) const;
   struct Point {
     std::optional<std::size_t> block;  ///< none: rock far away

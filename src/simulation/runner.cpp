@@ -10,6 +10,7 @@
 #include "dynamics/energy.h"
 #include "simulation/build_boundary.h"
 #include "simulation/build_model.h"
+#include "simulation/build_water.h"
 #include "simulation/checkpoint_checks.h"
 #include "simulation/energy_audit.h"
 #include "simulation/excavate.h"
@@ -179,6 +180,7 @@ void Runner::end() {
       record.steps > 0 ? static_cast<double>(now_.iterations) / static_cast<double>(record.steps) : 0.0;
   record.energy = energy();
   record.planes = planes_beside(setup_, model_, now_.mechanics);
+  record.water = water_record(model_, now_.mechanics);
   record.elements = element_records(model_, now_.mechanics, now_.peaks, setup_.stages);
   record.interrupted = record.interrupted || is_set(options_.stop) || now_.stage < std::ssize(setup_.stages);
   record.profile = profile_;
@@ -228,6 +230,8 @@ void Runner::begin_stage() {
   model_.joints_wear = wears_joints(setup_.stages, at(now_.stage));
   if (auto laws = laws_in_stage(setup_, now_.control, record.stage); laws != model_.laws)
     stepper_->set_laws(std::move(laws));
+  model_.water = water_in(setup_, at(now_.stage));
+  model_.water_drains = record.stage.kind != StageKind::settle;  // static steps take no time
   now_.present = model_.surface.present;
   observer_.stage_begin(now_.stage, record);
   if (is_new) reporter_.frame(now_);

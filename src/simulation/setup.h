@@ -10,6 +10,7 @@
 #include "cutting/block_system.h"
 #include "loading/ground_motion.h"
 #include "loading/load.h"
+#include "loading/water_table.h"
 #include "model/options.h"
 #include "record/stage.h"
 #include "simulation/boundary.h"
@@ -53,6 +54,15 @@ struct Excavation {
   std::string name;
   Ring outline;  ///< counter-clockwise, local coordinates
   SupportPressure pressure = {};
+  bool is_filled = false;  ///< with water, once it is open; else drained
+};
+
+/// Water in joints and around blocks.
+struct Water {
+  std::string name;  ///< may be empty, of one that is alone
+  loading::WaterTable table;
+  double density = 1000.0;       ///< kg/m³
+  std::vector<bool> dry_joints;  ///< of the joint sets, then of the trace maps: they hold none of it
 };
 
 /// Follows a point of a block, rock far away, or what an element carries.
@@ -129,6 +139,7 @@ struct RunSetup {
   std::vector<loading::Load> loads;
   std::vector<loading::Support> supports;
   std::vector<loading::Spring> springs;
+  std::vector<Water> waters;                 ///< of which a stage chooses
   std::vector<std::string> staged_supports;  ///< that stages install: names, in the order of State::installed
   std::vector<Stage> stages;
   std::vector<History> histories;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/index.h"
+#include "coupling/facets.h"
 #include "dynamics/forces_of_blocks.h"
 #include "simulation/wall_faces.h"
 #include "simulation/wall_movement.h"
@@ -58,6 +59,12 @@ void StagedOpening::keep_forces(const Stage& stage, dynamics::State& state,
       const std::size_t b = at(model_.surface.block[v]);
       if (forces[v] != Vec2{} && model_.moves(b) && goes[b] == 0)
         state.walls.forces.push_back({forces[v], static_cast<int>(v), e});
+    }
+    // What the water between rock and wall does goes with the rock, too.
+    const dynamics::WaterOfModel water = dynamics::water_of(model_, state);
+    if (water.water == nullptr) continue;
+    for (const auto& [vertex, force] : water.water->wall_forces(model_, state, water.memory, e)) {
+      if (goes[at(model_.surface.block[at(vertex)])] == 0) state.walls.forces.push_back({force, vertex, e});
     }
   }
   std::erase_if(state.walls.forces, [&](const dynamics::WallForce& force) {

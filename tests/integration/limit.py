@@ -150,13 +150,19 @@ class DefaultCriterion(Limit):
     def test_the_page_on_slopes_says_what_the_program_says(self):
         self.keyblock("new", "slope", "--force")
         page = (ROOT / "docs/slopes.md").read_text()
-        blocks = re.findall(r"```sh\nkeyblock ((?:limit|safety) slope\.toml [^\n]*)\n```\n```\n(.*?)\n```", page, re.DOTALL)
-        self.assertEqual(len(blocks), 3)
+        blocks = re.findall(r"```sh\nkeyblock ((?:limit|safety) (?:slope|wet)\.toml [^\n]*)\n```\n```\n(.*?)\n```", page, re.DOTALL)
+        water, dam, earthquake = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+        self.write("wet.toml", (self.folder / "slope.toml").read_text() + water)
+        self.assertEqual(len(blocks), 4)
         for words, printed in blocks:
             said = self.keyblock(*words.split()).stdout
             for line in printed.split("…\n")[-1].splitlines():
                 self.assertIn(line + "\n", said, words)
-        (earthquake,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+        rock = 'title = "Dam"\n[rock]\ndensity = 2400\nyoung = 5e10\npoisson = 0.2\nstate = "plane-strain"\n[joints]\nfriction = 30\n'
+        settle = '[time]\nstep = 0.005\n[[stage]]\nname = "full"\nkind = "settle"\n'
+        self.write("dam.toml", rock + dam + settle)
+        self.limit("dam.toml", "--key", "joints.strength_factor", "--from", 1, "--to", 4, "--tolerance", 0.002, out="dam")
+        self.check_bracket(2.223868, 0.004, out="dam")
         slope = re.sub(r'(?m)^boundary = "frame".*\n', "", (self.folder / "slope.toml").read_text())
         self.write("shaken.toml", slope + earthquake)
         self.keyblock("run", "shaken.toml", "-o", "shaken")

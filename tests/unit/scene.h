@@ -145,8 +145,8 @@ struct Simulator {
   }
   /// What the energy audit leaves unexplained, J.
   [[nodiscard]] double residual() const {
-    return energy() - initial_energy + state.ledger.friction + state.ledger.damping + state.ledger.radiated +
-           state.ledger.numerical - state.ledger.input;
+    return energy() - initial_energy + state.ledger.friction + state.ledger.damping + state.ledger.radiated -
+           state.ledger.water + state.ledger.numerical - state.ledger.input;
   }
 
   dynamics::Model model;

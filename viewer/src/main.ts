@@ -51,7 +51,7 @@ function conventions(): HTMLElement {
         "A block has fallen when it has moved down, or into the opening, by more than the limit of the scenario: by default 5 % of the width of the opening, and without an opening half of √(area of the block). Loosened means moved by more than 1 cm, or the limit of the scenario, without having fallen. Blocks move against the base: the fixed blocks, where they move alike. Damage is cumulative since the first excavation; the user guide has the definitions.",
       ),
       item(
-        "Energies: kinetic + strain + gravity + contact + friction + damping + radiated + numerical − input = residual, where friction, damping, radiated and numerical are losses and input is the work of motion, loads and supports.",
+        "Energies: kinetic + strain + gravity + contact + friction + damping + radiated + numerical − input − water = residual, where friction, damping, radiated and numerical are losses and input is the work of motion, loads and supports, water that of the pressure of water.",
       ),
     ),
   );

@@ -218,6 +218,7 @@ export function solverPlots(run: Run, clock: Clock): Plot[] {
     ["radiated", "#8B5FBF"],
     ["numerical", "#56B4E9"],
     ["input", "#B8A900"],
+    ["water", "#1B6CA8"],
   ];
   const largest = Math.max(
     ...energies.map(([name]) => column(name).reduce((m, v) => Math.max(m, Math.abs(v)), 0)),

@@ -136,7 +136,7 @@ print("/".join(f["steps/energy"].attrs["columns"].astype("U")) == b"/".join(f["s
             "contacts/shear_force N/m\n"
             "histories/values m, m, m/s, m/s, Pa, Pa, Pa, m/s2, m/s2\n"
             "model/block_young Pa\n"
-            "steps/energy J/m, J/m, J/m, J/m, J/m, J/m, J/m, J/m, 1, J/m\n"
+            "steps/energy J/m, J/m, J/m, J/m, J/m, J/m, J/m, J/m, 1, J/m, J/m\n"
             "elements/force N/m\n"
             "histories/element_values N/m, m\n"
             "True\n");

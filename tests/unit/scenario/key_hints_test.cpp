@@ -69,15 +69,17 @@ TEST(KeyHints, OfWhatTheProgramHasNot) {
       "a [[spring]] between points of two blocks is an anchor, with its stiffness and yield; bolts that rock "
       "holds along "
       "their length, and dowels, are not in the program";
-  expect_hints({{"bolt=1", anchor},
-                {"anchor=1", anchor},
-                {"srf=1",
-                 "strength_factor of [joints] divides their strength; keyblock limit finds the factor of "
-                 "safety by --key "
-                 "joints.strength_factor"},
-                {"liner=1", "linings and beams are not in the program"},
-                {"water=1", "water is not in the program"},
-                {"joints.dilation=1", "dilation of joints is not in the program"}});
+  expect_hints(
+      {{"bolt=1", anchor},
+       {"anchor=1", anchor},
+       {"srf=1",
+        "strength_factor of [joints] divides their strength; keyblock limit finds the factor of "
+        "safety by --key "
+        "joints.strength_factor"},
+       {"liner=1", "linings and beams are not in the program"},
+       {"flow=1", "flow of water in joints is not in the program; [water] is water at rest, below a table"},
+       {"groundwater=1", "did you mean 'water'?"},
+       {"joints.dilation=1", "dilation of joints is not in the program"}});
 }
 
 TEST(KeyHints, NoneRatherThanAWrongOne) {
