@@ -29,6 +29,7 @@ KEYS = {
     "src/scenario/scenario.h",
     "src/scenario/sections.h",
     "src/scenario/build_setup.cpp",
+    "src/scenario/properties.cpp",
     "src/simulation/setup.h",
     "src/loading/load.h",
 }
