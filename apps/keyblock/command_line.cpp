@@ -70,6 +70,7 @@ void describe(CLI::App& app, int& exit_code) {
   add_verify(app, exit_code);
   add_study(app);
   add_limit(app);
+  add_safety(app);
   add_new(app);
   add_schema(app);
   add_completion(app);

@@ -13,8 +13,8 @@
 #include "commands.h"
 #include "core/error.h"
 #include "interrupt.h"
+#include "limit_arguments.h"
 #include "record/standing.h"
-#include "scenario_arguments.h"
 #include "study/folder.h"
 #include "study/limit_search.h"
 #include "study/limit_words.h"
@@ -25,22 +25,12 @@ namespace {
 
 using Status = study::Bisection::Status;
 
-struct LimitArguments {
-  ScenarioArguments scenario;
-  study::LimitRequest request;
-  std::string until;  ///< empty: by the model
-  std::optional<double> above;
-  std::string folder;
-  int workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  bool resume = false;
-};
-
 void tell_trial(const study::LimitRequest& request, const study::RealizationLimit& limit,
                 const study::LimitTrial& trial) {
   const std::string which =
       request.realizations > 1 ? fmt::format("realization {}, ", limit.realization) : "";
   std::string measured = simulation::standing_name(trial.standing);
-  if (!request.criterion.collapse) {
+  if (request.criterion.by_measure) {
     const std::string also = trial.standing == simulation::Standing::stands ? "" : ", " + measured;
     measured = fmt::format("{} {:.5g}{}", request.criterion.measure, trial.measure, also);
   }
@@ -71,7 +61,7 @@ void refuse_ends(const study::LimitResult& result) {
                  "exchange --from and --to");
     case Status::met_at_both:
       return end("--from", request.from, "that the criterion holds at both ends", without,
-                 request.criterion.collapse
+                 request.criterion.by_standing
                      ? "move --from away from --to"
                      : "move --from away from --to, raise --above, or count from a later stage with --since");
     case Status::met_at_none:
@@ -93,6 +83,8 @@ void tell_result(const study::LimitResult& result, const std::string& folder) {
   }
   std::cout << "report: " << folder << "/report.html" << std::endl;
 }
+
+}  // namespace
 
 void run_limit(LimitArguments arguments) {
   study::Plan plan =
@@ -126,6 +118,31 @@ void run_limit(LimitArguments arguments) {
   if (result.realizations.size() == 1) refuse_ends(result);
 }
 
+void add_limit_folder(CLI::App& command, LimitArguments& arguments) {
+  command
+      .add_option("-o,--output", arguments.folder,
+                  "Folder of the limit: limit.json, limits.csv, report.html, runs/")
+      ->required()
+      ->type_name("DIR");
+  command
+      .add_option("--workers", arguments.workers,
+                  "Runs at a time, each a process of one thread; any number gives the same limit")
+      ->check(CLI::Range(1, 4096).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+}
+
+void add_limit_realizations(CLI::App& command, study::LimitRequest& request) {
+  command
+      .add_option("--realizations", request.realizations,
+                  "A limit for each of realizations 0 … N-1, their median and other quantiles")
+      ->check(CLI::Range(1, 100000).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+}
+
+namespace {
+
 /// The table of default criteria, a line each.
 std::string default_criteria() {
   std::string text = "Without --until:\n";
@@ -148,7 +165,8 @@ void add_search_options(CLI::App& command, LimitArguments& arguments) {
       .add_option(
           "--until", arguments.until,
           "What is to hold at the end of the last stage: fallen (area of fallen rock), moved (largest "
-          "displacement), collapsed (the blocks do not stand), or a measure of summary.json by its name; "
+          "displacement), collapsed (the blocks do not stand), gives_way (they do not stand, or have moved "
+          "since the stage began), or a measure of summary.json by its name; "
           "default: by the model, see below")
       ->type_name("CRITERION");
   command
@@ -172,12 +190,7 @@ void add_search_options(CLI::App& command, LimitArguments& arguments) {
                   "default: 8 for the scale of a motion, which need not be monotone, else 1")
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("N");
-  command
-      .add_option("--realizations", request.realizations,
-                  "A limit for each of realizations 0 … N-1, their median and other quantiles")
-      ->check(CLI::Range(1, 100000).description(""))
-      ->capture_default_str()
-      ->type_name("N");
+  add_limit_realizations(command, request);
 }
 
 }  // namespace
@@ -189,17 +202,7 @@ void add_limit(CLI::App& app) {
       "Bisection over a number of the scenario for the value at which rock first falls, moves or collapses");
   add_scenario_file(*command, arguments->scenario);
   add_search_options(*command, *arguments);
-  command
-      ->add_option("-o,--output", arguments->folder,
-                   "Folder of the limit: limit.json, limits.csv, report.html, runs/")
-      ->required()
-      ->type_name("DIR");
-  command
-      ->add_option("--workers", arguments->workers,
-                   "Runs at a time, each a process of one thread; any number gives the same limit")
-      ->check(CLI::Range(1, 4096).description(""))
-      ->capture_default_str()
-      ->type_name("N");
+  add_limit_folder(*command, *arguments);
   command->add_flag("--resume", arguments->resume,
                     "Go on with the runs in DIR; --from, --to, --until, --above, --since, --tolerance, "
                     "--scan and --realizations may change");

@@ -40,6 +40,27 @@ void bind_scenario(py::module_& module) {
       .def_readonly("excavations", &Block::excavations)
       .def_readonly("area", &Block::area, "m2");
   seal(block);
+  py::class_<KeyBlock> key_block(module, "KeyBlock", py::is_final(), "A block with a face on an opening.");
+  key_block.def_readonly("block", &KeyBlock::block)
+      .def_readonly("name", &KeyBlock::name)
+      .def_readonly("layer", &KeyBlock::layer)
+      .def_readonly("centroid", &KeyBlock::centroid)
+      .def_readonly("area", &KeyBlock::area)
+      .def_readonly("depth", &KeyBlock::depth)
+      .def_readonly("weight", &KeyBlock::weight)
+      .def_readonly("mode", &KeyBlock::mode)
+      .def_readonly("factor_of_safety", &KeyBlock::factor_of_safety)
+      .def_readonly("force", &KeyBlock::force)
+      .def_readonly("direction", &KeyBlock::direction)
+      .def_readonly("joints", &KeyBlock::joints);
+  seal(key_block);
+  py::class_<Census> census(module, "Census", py::is_final(), "The key blocks of one realization.");
+  census.def_readonly("blocks", &Census::blocks)
+      .def_readonly("layers", &Census::layers)
+      .def_readonly("wall", &Census::wall)
+      .def_readonly("wanted_factor", &Census::wanted_factor)
+      .def_readonly("assumptions", &Census::assumptions);
+  seal(census);
   py::class_<KeyMeaning> meaning(module, "KeyMeaning", py::is_final(),
                                  "What docs/scenario.md says of a key.");
   meaning.def_readonly("key", &KeyMeaning::key)
@@ -130,7 +151,13 @@ void bind_scenario(py::module_& module) {
           [](const Scenario& s, int realization) {
             return without_lock(s, [&](const Scenario& own) { return own.cut(realization); });
           },
-          py::arg("realization") = 0);
+          py::arg("realization") = 0)
+      .def(
+          "census",
+          [](const Scenario& s, int realization, double factor) {
+            return without_lock(s, [&](const Scenario& own) { return own.census(realization, factor); });
+          },
+          py::arg("realization") = 0, py::arg("factor") = 1.5);
   seal(scenario);
 }
 

@@ -46,6 +46,31 @@ struct Block {
   std::vector<std::vector<std::string>> edges;
 };
 
+/// A block with a face on an opening, or on one that blocks before it have left: docs/guide/limits.md, "Key blocks". Per metre of opening.
+struct KeyBlock {
+  int block = 0;                      ///< number in Scenario::cut
+  std::string name;                   ///< of an explicit block; empty for cut ones
+  int layer = 0;                      ///< from 1 on, in which it moves; 0: it stays
+  std::array<double, 2> centroid{};   ///< m, real coordinates
+  double area = 0.0;                  ///< m²
+  double depth = 0.0;                 ///< m, of the corner that is farthest from the wall
+  double weight = 0.0;                ///< N/m
+  std::string mode;                   ///< falls, slides, slides between faces, stable, not removable
+  double factor_of_safety = 0.0;      ///< infinite where nothing drives it
+  double force = 0.0;                 ///< N/m against its motion, that it needs for the wanted factor
+  std::array<double, 2> direction{};  ///< of its motion, unit vector; zero where nothing drives it
+  std::vector<std::string> joints;    ///< sets and maps along which it slides
+};
+
+/// The key blocks of one realization.
+struct Census {
+  std::vector<KeyBlock> blocks;  ///< those that move by layer, then those that stay
+  int layers = 0;
+  double wall = 0.0;           ///< m, length of the wall of all openings
+  double wanted_factor = 0.0;  ///< of safety
+  std::string assumptions;     ///< a sentence
+};
+
 /// A scenario: its text and the values that were put in the place of the text's. docs/scenario.md has the keys. A value type; nothing is
 /// checked before check(), cut() or a run, except the syntax.
 class KEYBLOCK_API Scenario {
@@ -114,6 +139,8 @@ class KEYBLOCK_API Scenario {
   [[nodiscard]] std::vector<std::string> check(int realization = 0) const;
   /// The blocks of one realization. Throws InputError, RunError.
   [[nodiscard]] std::vector<Block> cut(int realization = 0) const;
+  /// The key blocks of one realization, with the forces for a wanted factor of safety (≥ 1). Throws InputError, RunError.
+  [[nodiscard]] Census census(int realization = 0, double wanted_factor = 1.5) const;
 
  private:
   struct Document;

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .motion import Motion
     from .opening import open, open_limit, open_study
     from .results import Result
-    from .study_runs import StudyState, collect_study, find_limit, plan_study, run_study, study_state, study_task, verify
+    from .study_runs import StudyState, collect_study, find_limit, find_safety, plan_study, run_study, study_state, study_task, verify
     from .run_table import run_table
     from .scenario import Scenario
     from .simulation import Controller, Simulation, controller
@@ -43,6 +43,7 @@ _LAZY = {
     "study_state": "study_runs",
     "collect_study": "study_runs",
     "find_limit": "study_runs",
+    "find_safety": "study_runs",
     "verify": "study_runs",
     "StudyState": "study_runs",
     "run_table": "run_table",
@@ -57,7 +58,7 @@ _LAZY = {
     "Study": "study",
     "Limit": "limit",
 }
-_MODULES = {"scenario", "simulation", "motion", "traces", "steering", "cut", "results", "study", "limit", "plot", "animate", "convert", "blocks", "frames", "contacts"}
+_MODULES = {"scenario", "simulation", "motion", "traces", "steering", "cut", "census", "results", "study", "limit", "plot", "animate", "convert", "blocks", "frames", "contacts"}
 
 __all__ = [
     "Controller",
@@ -75,6 +76,7 @@ __all__ = [
     "study_state",
     "collect_study",
     "find_limit",
+    "find_safety",
     "verify",
     "StudyState",
     "run_table",

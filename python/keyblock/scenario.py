@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from . import _arguments as arguments
 from ._compiled import core as _core
+from .census import Census
 from .cut import CutBlocks
 from .scenario_tables import Keys, Tables, key_text
 
@@ -135,6 +136,11 @@ class Scenario(Keys):
     def cut(self, realization: int = 0) -> CutBlocks:
         """The blocks of one of the rock masses that the joint statistics and the seed stand for."""
         return CutBlocks(self._core.cut(arguments.count("realization", realization)))
+
+    def census(self, realization: int = 0, factor: float = 1.5) -> Census:
+        """The key blocks of one of the rock masses: what falls or slides into the openings by limit equilibrium, without a run. `factor`:
+        of safety, at least 1, that the forces of the blocks are for. Throws InputError where no rock has a free face."""
+        return Census(self._core.census(arguments.count("realization", realization), arguments.number("factor", factor)))
 
     def simulate(
         self,

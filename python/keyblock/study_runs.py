@@ -155,6 +155,53 @@ def find_limit(
     return Limit(path)
 
 
+def find_safety(
+    scenario: Scenario,
+    folder: str | os.PathLike[str],
+    *,
+    stage: str | None = None,
+    sets: Sequence[str] = (),
+    area: float | None = None,
+    moved: float | None = None,
+    start: float = 0.5,
+    stop: float = 5.0,
+    tolerance: float = 0.005,
+    realizations: int = 1,
+    sweep: int | None = None,
+    workers: int | None = None,
+    resume: bool = False,
+    progress: Callable[[int, int], Any] | bool | str | None = None,
+) -> Limit:
+    """The factor of safety, as `keyblock safety` finds it: what tan(friction), cohesion and tension of joints may be divided by, from the
+    equilibrium of `stage` on (None: that of [safety], or the last static one), until rock moves by more than `moved`, m (None: 0.2 % of the block
+    size), or does not stand; with `area`, m²: until blocks of more than that move. `sets`: names of the joint sets and trace maps that are reduced, none: all.
+    `sweep`: equal parts of the way from `start` to `stop` that are looked at as well. `falls` of the result's realizations tells from where on
+    blocks do not stand. Throws InputError, and RunError where a run fails."""
+    asked = scenario.copy()
+    safety = asked["safety"] if "safety" in asked else asked.setdefault("safety", {})
+    if stage is not None:
+        safety["stage"] = arguments.text("stage", stage)
+    if sets:
+        safety["sets"] = arguments.texts("sets", sets)
+    if area is not None:
+        safety["area"] = arguments.number("area", area)
+    if moved is not None:
+        safety["moved"] = arguments.number("moved", moved)
+    return find_limit(
+        asked,
+        folder,
+        "safety.strength_factor",
+        start,
+        stop,
+        tolerance=tolerance,
+        realizations=realizations,
+        scan=None if sweep is None else arguments.count("sweep", sweep),
+        workers=workers,
+        resume=resume,
+        progress=progress,
+    )
+
+
 def verify(
     cases: str | os.PathLike[str],
     names: Sequence[str] = (),

@@ -45,6 +45,7 @@ RUNS = {
     and n["scenario"]["stage.'first earthquake'.scale"] == 2.0
     and n["scenario"].joint_set.names[-1] == "J4",
     "scenario.cut(realization=7)": lambda n: len(n["blocks"]) > 100 and exists("blocks.pdf"),
+    "census = scenario.census(": lambda n: 0 < len(n["census"].moving) < len(n["census"]) and n["block"].factor_of_safety < 1.0,
     "progress=lambda now": lambda n: n["summary"]["realization"] == 7 and exists("out/seven/result.h5"),
     "def tell(now)": lambda n: True,
     "kb.run_study(": lambda n: len(n["study"].table()) > 1 and (n["study"].table().status == "done").all(),

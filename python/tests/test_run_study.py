@@ -191,6 +191,18 @@ def test_a_limit_takes_its_criterion_from_the_model(tmp_path: Path) -> None:
     assert "a slope" in found.summary.why
 
 
+def test_the_factor_of_safety_is_that_of_the_program(tmp_path: Path) -> None:
+    scenario = kb.Scenario.load(ROOT / "verification/scenarios/limit_slope.toml")
+    ours = kb.find_safety(scenario, tmp_path / "ours", sets=["bedding"], workers=2)
+    keyblock("safety", ROOT / "verification/scenarios/limit_slope.toml", "--sets", "bedding", "-o", "theirs", folder=tmp_path)
+    assert ours.value == kb.open(tmp_path / "theirs").value == pytest.approx(math.tan(math.radians(40)) / math.tan(math.radians(30)), rel=0.005)
+    (found,) = ours.realizations
+    assert found["falls"]["trial"]["value"] == found["bracket"]["met"] and found["falls"]["stands_to"] == found["bracket"]["not_met"]
+    assert "safety" not in scenario, "the scenario that was given stays as it was"
+    with pytest.raises(kb.InputError, match="did you mean 'bedding'"):
+        kb.find_safety(scenario, tmp_path / "wrong", sets=["beding"])
+
+
 def test_problems_with_known_answers() -> None:
     told: list[int] = []
     table = kb.verify(ROOT / "verification", ["incline"], orders=[1], workers=2, progress=lambda done, runs: told.append(done))

@@ -235,6 +235,40 @@ def test_blocks_are_those_of_the_program(tmp_path: Path) -> None:
     assert "tunnel" in blocks.excavations
 
 
+def test_key_blocks_are_those_of_the_program(tmp_path: Path) -> None:
+    scenario = kb.Scenario.load(TUNNEL)
+    census = scenario.census(realization=2, factor=2.0)
+    keyblock("cut", TUNNEL, "-o", "cut", "--census", "--factor", "2", "--realization", "2", folder=tmp_path)
+    import json
+
+    there = json.loads((tmp_path / "cut/census.json").read_text())
+    assert [block.block for block in census] == [block["block"] for block in there["blocks"]]
+    assert census.layers == there["layers"] > 1
+    assert (census.wall, census.wanted_factor, census.assumptions) == (there["wall_m"], 2.0, there["assumptions"])
+    assert census.areas.sum() == pytest.approx(there["totals"]["moving_area_m2"])
+    assert census.depths.max() == there["totals"]["deepest_m"]
+    assert census.area_per_metre == pytest.approx(there["totals"]["area_m2_per_m"])
+    blocks = scenario.cut(realization=2)
+    for block, other in zip(census, there["blocks"], strict=True):
+        assert block.area == blocks[block.block].area == other["area_m2"]
+        assert (block.mode, block.force, list(block.joints)) == (other["mode"], other["force_n_m"], other["joints"])
+        assert block.moves == (block.factor_of_safety < 1.0) == (other["layer"] is not None)
+        assert np.isinf(block.factor_of_safety) == (other["factor_of_safety"] is None)
+        assert block.centroid.shape == block.direction.shape == (2,)
+    with pytest.raises(kb.InputError, match="at least 1"):
+        scenario.census(factor=0.5)
+    with pytest.raises(kb.InputError, match="gravity"):
+        scenario.gravity = 0.0
+        scenario.census()
+
+
+def test_key_blocks_are_a_table() -> None:
+    optional("pandas")
+    table = kb.Scenario.load(TUNNEL).census().table()
+    assert {"block", "mode", "factor_of_safety", "x", "y"} <= set(table.columns)
+    assert (table[table.layer > 0].factor_of_safety < 1.0).all()
+
+
 def test_blocks_are_drawn(tmp_path: Path) -> None:
     optional("matplotlib")
     axes = kb.Scenario.load(TUNNEL).cut().plot()

@@ -61,7 +61,7 @@ def things(folder: Path) -> dict[str, Callable[[], Any]]:
 
 
 # They end by themselves, need other programs, or draw.
-LEFT_OUT = {"run", "verify", "plot", "animate", "open", "open_run", "open_study", "open_limit", "Result", "Study", "Limit", "run_study", "find_limit", "run_table"}
+LEFT_OUT = {"run", "verify", "plot", "animate", "open", "open_run", "open_study", "open_limit", "Result", "Study", "Limit", "run_study", "find_limit", "find_safety", "run_table"}
 
 
 def methods(of: Any) -> list[str]:
@@ -134,6 +134,9 @@ def test_options_of_runs_studies_and_limits_are_told(tmp_path: Path, told: Told)
         for option in ("folder", "key", "start", "stop", "until", "above", "since", "tolerance", "realizations", "scan", "workers", "resume"):
             given = {"folder": tmp_path / "limit", "key": "jonts.friction", "start": 1.0, "stop": 2.0, option: wrong}
             told(lambda: kb.find_limit(scenario, **given), f"find_limit({option}={wrong!r})")
+        for option in ("folder", "stage", "sets", "area", "moved", "start", "stop", "tolerance", "realizations", "sweep", "workers", "resume"):
+            given = {"folder": tmp_path / "safety", "start": 1.0, "stop": 1.0, option: wrong}
+            told(lambda: kb.find_safety(scenario, **given), f"find_safety({option}={wrong!r})")
         for option in ("cases", "names", "orders", "all", "workers"):
             told(lambda: kb.verify(**{"cases": tmp_path, "names": ["no such"], option: wrong}), f"verify({option}={wrong!r})")
         for function in (kb.run_study, kb.find_limit):

@@ -1,6 +1,9 @@
 #include "keyblock/scenario.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -14,6 +17,7 @@
 #include "core/read_file.h"
 #include "job/check.h"
 #include "scenario/build.h"
+#include "scenario/key_blocks.h"
 #include "scenario/override.h"
 #include "scenario/parse.h"
 #include "scenario/toml_text.h"
@@ -320,13 +324,16 @@ std::string Scenario::toml() const {
 
 namespace {
 
-void check_realization(int realization) {
-  if (realization >= 0) return;
+[[noreturn]] void refuse(const char* argument, std::string found, const char* expected) {
   Diagnostic diagnostic;
-  diagnostic.key = "realization";
-  diagnostic.found = std::to_string(realization);
-  diagnostic.expected = "a whole number, at least 0";
+  diagnostic.key = argument;
+  diagnostic.found = std::move(found);
+  diagnostic.expected = expected;
   throw InputError(std::move(diagnostic));
+}
+
+void check_realization(int realization) {
+  if (realization < 0) refuse("realization", std::to_string(realization), "a whole number, at least 0");
 }
 
 }  // namespace
@@ -348,6 +355,32 @@ std::vector<Block> Scenario::cut(int realization) const {
   const std::size_t first = blocks.size() - parsed.blocks.size();
   for (std::size_t k = 0; k < parsed.blocks.size(); ++k) blocks[first + k].name = parsed.blocks[k].name;
   return blocks;
+}
+
+Census Scenario::census(int realization, double wanted_factor) const {
+  check_realization(realization);
+  if (!(wanted_factor >= 1.0) || !std::isfinite(wanted_factor))
+    refuse("wanted_factor", fmt::format("{}", wanted_factor), "a factor of safety, at least 1");
+  const scenario::Scenario parsed = api::parsed(*this);
+  const scenario::BlockModel model = scenario::build_blocks(parsed, realization);
+  const census::Census found = scenario::take_census(parsed, model, wanted_factor);
+  Census census{{}, found.layers, found.wall, wanted_factor, scenario::census_assumptions};
+  for (const census::KeyBlock& key : found.blocks) {
+    const Vec2 place = key.centroid + model.system.origin, way = key.removal.direction;
+    census.blocks.push_back({key.block,
+                             scenario::block_name(parsed, model, key.block),
+                             key.layer,
+                             {place.x, place.y},
+                             key.area,
+                             key.depth,
+                             key.weight,
+                             census::mode_name(key.removal.mode),
+                             key.removal.factor(),
+                             key.force,
+                             {way.x, way.y},
+                             scenario::sliding_joints(parsed, key)});
+  }
+  return census;
 }
 
 }  // namespace keyblock

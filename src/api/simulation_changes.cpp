@@ -41,8 +41,8 @@ void Simulation::set_velocity(std::span<const double> velocity) {
 }
 
 JointStrength Simulation::strength(const std::string& joint) const {
-  const contact::JointLaw* law = parts_->runner().control().law(joint);
-  if (law == nullptr)
+  const std::optional<contact::JointLaw> law = parts_->runner().control().law(joint);
+  if (!law)
     refuse("joint", "\"" + joint + "\"",
            "the name of a joint set or of a trace map, \"joints\" or \"frame\"");
   return {api::degrees_of(law->friction_coefficient), law->cohesion, law->tension};

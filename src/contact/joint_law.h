@@ -69,6 +69,17 @@ struct JointLaw {
   [[nodiscard]] Strength strength(double worn, bool bonded) const;
   /// What is lost from w on.
   [[nodiscard]] StrengthLoss loss(double worn, bool bonded) const;
+  /// With tan φ, c and σ_t, at the peak and at the end, over a factor. A factor of 1 keeps every bit.
+  [[nodiscard]] JointLaw divided_by(double factor) const {
+    JointLaw law = *this;
+    law.friction_coefficient /= factor;
+    law.cohesion /= factor;
+    law.tension /= factor;
+    if (!law.residual) return law;
+    law.residual->friction_coefficient /= factor;
+    law.residual->cohesion /= factor;
+    return law;
+  }
   /// Whether a bond holds on when it slips.
   [[nodiscard]] bool is_ductile(double worn) const {
     return has_memory() && (residual->slip > 0.0 || worn > 0.0);

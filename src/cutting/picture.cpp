@@ -12,6 +12,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "core/index.h"
 #include "core/xml_text.h"
 
 namespace keyblock::cutting {
@@ -95,12 +96,14 @@ class Picture {
     body_.reserve(bytes_of_legend + bytes_per_edge * edges);
   }
 
-  std::string draw(const std::vector<rockmass::Trace>& traces, const std::vector<Ring>& excavations) {
+  std::string draw(const std::vector<rockmass::Trace>& traces, const std::vector<Ring>& excavations,
+                   const std::vector<BlockPaint>& paint) {
     write("<g fill=\"{}\" fill-rule=\"evenodd\">\n", rock_fill);
     fills(false);
     write("</g>\n<g fill=\"#ffffff\" fill-rule=\"evenodd\">\n");
     fills(true);
     write("</g>\n");
+    for (const BlockPaint& some : paint) painted(some);
     removed(traces);
     joints();
     outlines(excavations);
@@ -147,13 +150,25 @@ class Picture {
     body_ += 'Z';
   }
 
+  void fill(const CutBlock& block) {
+    body_ += "<path d=\"";
+    for (std::size_t r = 0; r < block.polygon.ring_count(); ++r) ring_path(block.polygon.ring(r), {});
+    body_ += "\"/>\n";
+  }
+
   void fills(bool excavated) {
     for (const CutBlock& block : system_.blocks) {
-      if (block.excavations.empty() == excavated) continue;
-      body_ += "<path d=\"";
-      for (std::size_t r = 0; r < block.polygon.ring_count(); ++r) ring_path(block.polygon.ring(r), {});
-      body_ += "\"/>\n";
+      if (block.excavations.empty() != excavated) fill(block);
     }
+  }
+
+  void painted(const BlockPaint& paint) {
+    constexpr double legend_width = 12.0;
+    if (paint.blocks.empty()) return;
+    write("<g fill=\"{}\" fill-rule=\"evenodd\">\n", paint.colour);
+    for (const int b : paint.blocks) fill(system_.blocks[at(b)]);
+    write("</g>\n");
+    legend_.push_back({paint.name, paint.colour, legend_width});
   }
 
   void removed(const std::vector<rockmass::Trace>& traces) {
@@ -263,8 +278,9 @@ class Picture {
 }  // namespace
 
 std::string draw_svg(const BlockSystem& system, const std::vector<rockmass::Trace>& traces,
-                     const std::vector<Ring>& excavations, const PictureNames& names) {
-  return Picture(system, names).draw(traces, excavations);
+                     const std::vector<Ring>& excavations, const PictureNames& names,
+                     const std::vector<BlockPaint>& paint) {
+  return Picture(system, names).draw(traces, excavations, paint);
 }
 
 }  // namespace keyblock::cutting

@@ -14,10 +14,18 @@ struct PictureNames {
   std::vector<std::string> excavations;
 };
 
+/// Blocks that are filled with a colour, and what the legend says of them.
+struct BlockPaint {
+  std::string name;
+  std::string colour;  ///< as SVG has it
+  std::vector<int> blocks;
+};
+
 /// A picture of the blocks as an SVG text, 1000 units wide: blocks, their edges in the colour of the joint set or map,
 /// what was removed of the traces in grey, outlines of excavations in black, a scale bar and a legend. `traces` and
-/// `excavations` in real coordinates, as given to cut.
+/// `excavations` in real coordinates, as given to cut. Of `paint` only what has blocks is in the legend.
 std::string draw_svg(const BlockSystem& system, const std::vector<rockmass::Trace>& traces,
-                     const std::vector<Ring>& excavations, const PictureNames& names = {});
+                     const std::vector<Ring>& excavations, const PictureNames& names = {},
+                     const std::vector<BlockPaint>& paint = {});
 
 }  // namespace keyblock::cutting

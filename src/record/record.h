@@ -224,8 +224,11 @@ struct Damage {
   double fallen_depth = 0.0, fallen_depth_crown = 0.0, fallen_depth_left = 0.0, fallen_depth_right = 0.0,
          fallen_depth_invert = 0.0;
   double opening_filled_ratio = 0.0;
-  double loosened_area = 0.0;                                 ///< m²
+  double loosened_area = 0.0;  ///< m²
+  /// m², of blocks that have fallen, that a static stage calls moving, or that a dynamic one leaves faster than `loosened_distance` per second.
+  double moving_area = 0.0;
   double displacement_max = 0.0;                              ///< m, of a centroid against the base
+  double stage_displacement = 0.0;                            ///< m, the same since the stage at hand began
   double rotation_max = 0.0;                                  ///< degrees, of a block
   double slip_max = 0.0, slip_mean = 0.0, opening_max = 0.0;  ///< m, of joints in place
   double slipped_length = 0.0, opened_length = 0.0;           ///< m, likewise

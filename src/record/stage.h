@@ -36,6 +36,9 @@ struct Stage {
   std::optional<int> max_steps;  ///< settle
   /// settle: inertia forces of an earthquake as loads that stay, over the weight: to the right, and up.
   double k_h = 0.0, k_v = 0.0;
+  /// What strength of joints is divided by while the stage lasts, but that of the frame; of which sets, maps or `joints`, by name: of all.
+  double strength_factor = 1.0;
+  std::vector<std::string> strength_of;
   /// Whether slip counts for the strength of joints. Not given: in every stage but those that turn gravity on (wears_joints).
   std::optional<bool> wears_joints;
   double tolerance = 1e-4;  ///< settle: largest residual of a block over its weight at equilibrium

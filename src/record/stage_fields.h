@@ -39,6 +39,10 @@ void visit_stage(Record& r, const Visit& visit) {
   field({"k_h", "", "seismic coefficient of a static stage, to the right", summary, nullptr, true},
         r.stage.k_h);
   field({"k_v", "", "the same, up", summary, nullptr, true}, r.stage.k_v);
+  field({"strength_factor", "", "what strength of joints is divided by in it", summary, nullptr, true},
+        r.stage.strength_factor);
+  field({"strength_of", "", "names of the joints that this is of; none: all", summary, nullptr, true},
+        r.stage.strength_of);
   field({"pga_m_s2", "m/s2", "peak acceleration of the scaled motion in the section", summary, "pga"}, r.pga);
   field({"pgv_m_s", "m/s", "its peak velocity", summary, "pgv", true}, r.pgv);
   field({"arias_m_s", "m/s", "its Arias intensity", summary, "arias", true}, r.arias);

@@ -79,6 +79,10 @@ class Facts {
       if (stage.k_h != 0.0 || stage.k_v != 0.0)
         add(quoted("seismic coefficients in", stage.name),
             fmt::format("k_h {}, k_v {}", number(stage.k_h), number(stage.k_v)));
+      if (stage.strength_factor != 1.0)
+        add(quoted("strength of joints in", stage.name),
+            fmt::format("divided by {}{}", number(stage.strength_factor),
+                        stage.strength_of.empty() ? "" : ": " + joined(stage.strength_of)));
     }
     loads();
     if (!scenario_.supports.empty()) add("supports", std::to_string(scenario_.supports.size()));

@@ -156,11 +156,10 @@ class Plausibility {
     for (std::size_t k = 0; k < scenario_.excavations.size(); ++k) {
       const ExcavationSpec& spec = scenario_.excavations[k];
       const int index = static_cast<int>(k);
-      const bool taken_out =
-          std::any_of(scenario_.stages.begin(), scenario_.stages.end(), [&](const Stage& stage) {
-            return std::find(stage.excavate.begin(), stage.excavate.end(), index) != stage.excavate.end();
-          });
-      if (!taken_out && !scenario_.stages.empty()) warn("{}: no stage excavates it", spec.path);
+      const auto takes_out = [&](const Stage& stage) {
+        return std::ranges::find(stage.excavate, index) != stage.excavate.end();
+      };
+      if (!any_stage(takes_out) && !scenario_.stages.empty()) warn("{}: no stage excavates it", spec.path);
     }
   }
 
@@ -270,9 +269,8 @@ class Plausibility {
     }
     for (const MotionSpec& motion : scenario_.motions) {
       const int index = static_cast<int>(&motion - scenario_.motions.data());
-      const bool used = std::any_of(scenario_.stages.begin(), scenario_.stages.end(),
-                                    [&](const Stage& stage) { return stage.motion == index; });
-      if (!used) warn("{}: no stage uses it", motion.path);
+      const auto uses = [&](const Stage& stage) { return stage.motion == index; };
+      if (!any_stage(uses)) warn("{}: no stage uses it", motion.path);
     }
   }
 
@@ -309,6 +307,12 @@ class Plausibility {
     }
     if (!scenario_.stages.empty())
       check(join_path("stage", scenario_.stages.back().name), "at the end of the run");
+  }
+
+  /// Of the file: those that [safety] leaves out, too.
+  template <class Is>
+  [[nodiscard]] bool any_stage(const Is& is) const {
+    return std::ranges::any_of(scenario_.stages, is) || std::ranges::any_of(scenario_.left_out, is);
   }
 
   [[nodiscard]] bool has_opening() const {

@@ -300,6 +300,10 @@ void read_joints(TableReader& root, Scenario& scenario) {
   root.tables("trace_map", scenario.trace_maps,
               {.meaning = "Joints mapped one by one, straight or as polylines."},
               [&](TableReader& t, TraceMapSpec& map) { read_trace_map(t, map, scenario.joints); });
+  std::vector<std::string>& names = root.context().list_names[std::string(names_of_joints)];
+  names.emplace_back("joints");
+  for (const JointSetSpec& spec : scenario.joint_sets) names.push_back(spec.set.name);
+  for (const TraceMapSpec& spec : scenario.trace_maps) names.push_back(spec.name);
 }
 
 }  // namespace keyblock::scenario

@@ -113,6 +113,20 @@ void read_equilibrium(TableReader& t, Stage& stage, bool settle) {
                  .below = 1.0}));
 }
 
+/// Strength that is less while the stage lasts.
+void read_strength(TableReader& t, Stage& stage) {
+  t.number(
+      "strength_factor", stage.strength_factor,
+      {.meaning = "What tan(friction), cohesion and tension of joints, residual strength too, are divided by "
+                  "as long as the stage lasts. The frame keeps its friction.",
+       .above = 0.0,
+       .usual = &usual::strength_factor});
+  const bool is_reduced = t.documenting() || stage.strength_factor != 1.0;
+  read_joint_names(
+      t, "strength_of", stage.strength_of,
+      only(is_reduced, "strength_factor", {.meaning = "Of which joints.", .fallback = "all joints"}));
+}
+
 /// From which stage on slip uses the strength of joints up.
 void read_wear(TableReader& t, Stage& stage, const Scenario& scenario) {
   const auto weakens = [](const auto& spec) { return spec.joints.has_residual(); };
@@ -126,7 +140,7 @@ void read_wear(TableReader& t, Stage& stage, const Scenario& scenario) {
            {.meaning = "Whether slip counts for the strength of joints that weaken.",
             .fallback =
                 "false while gravity is turned on: in the first `settle` stages, without an excavation, "
-                "k_h, k_v or install, before others"}));
+                "k_h, k_v, strength_factor or install, before others"}));
   if (is_given) stage.wears_joints = wears;
 }
 
@@ -178,6 +192,7 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
                  .usual = &usual::duration}));
   read_stillness(t, stage, any || stage.kind != StageKind::settle, shake);
   read_equilibrium(t, stage, settle);
+  read_strength(t, stage);
   read_wear(t, stage, scenario);
 }
 

@@ -253,8 +253,10 @@ void read_scenario(TableReader& root, Scenario& scenario) {
   read_boundary(root, scenario);
   read_loading(root, scenario);
   read_run(root, scenario);
+  read_safety(root, scenario);
   read_study(root, scenario);
   Consistency(root, scenario).check();
+  if (!root.documenting()) reduce_strength(scenario);
 }
 
 }  // namespace keyblock::scenario

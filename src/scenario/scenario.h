@@ -140,6 +140,18 @@ enum class MotionPlace {
   base,      ///< what the base of the model does
 };
 
+/// [safety]: strength that is reduced from the equilibrium of a stage on.
+struct SafetySpec {
+  std::string stage;              ///< after which; later ones are left out
+  std::vector<std::string> sets;  ///< whose strength it is: sets, maps, `joints`; empty: all
+  std::optional<double>
+      strength_factor;  ///< what strength is divided by; none: the run is as without [safety]
+  std::optional<double>
+      moved;          ///< m in the stage, beyond which rock has moved; none: a share of the block size
+  double area = 0.0;  ///< m², that may move; 0: nothing may
+  int max_steps = 6000;
+};
+
 struct MotionComponentSpec {
   std::filesystem::path file;
   std::optional<int> channel;  ///< component of a file that holds several, counted from 1
@@ -207,7 +219,9 @@ struct Scenario {
   std::vector<loading::Support> supports;
   std::vector<loading::Spring> springs;
   std::vector<simulation::History> histories;
-  std::vector<simulation::Stage> stages;  ///< indices are those of `excavations` and `motions`
+  std::vector<simulation::Stage> stages;    ///< indices are those of `excavations` and `motions`
+  std::vector<simulation::Stage> left_out;  ///< stages after that of [safety]
+  std::optional<SafetySpec> safety;
   simulation::DamageLimits damage;
   simulation::OutputOptions output;
   simulation::AutomaticOrder automatic;

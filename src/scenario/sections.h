@@ -38,6 +38,13 @@ void read_solver(TableReader& root, Scenario& scenario);
 /// `damping` of [solver], after rock_damping and contact_damping. without_ground: there is no ground far away for damping in proportion to
 /// mass to be relative to.
 void read_damping(TableReader& solver_keys, dynamics::SolverOptions& solver, bool without_ground);
+/// [safety], after the stages.
+void read_safety(TableReader& root, Scenario& scenario);
+/// Names of joints, for `strength_of` of a stage and `sets` of [safety].
+void read_joint_names(TableReader& t, std::string_view key, std::vector<std::string>& names,
+                      const Rule& rule);
+/// What [safety] makes of the stages, once all is read.
+void reduce_strength(Scenario& scenario);
 /// [study], after all that its keys name.
 void read_study(TableReader& root, Scenario& scenario);
 

@@ -9,6 +9,15 @@
 namespace keyblock::scenario {
 namespace {
 
+/// What a name of a list is the name of.
+std::string element_of(std::string_view list) {
+  return list == names_of_joints ? "a joint set or trace map, or \"joints\"" : fmt::format("a [[{}]]", list);
+}
+
+std::string elements_of(std::string_view list) {
+  return list == names_of_joints ? "joint sets and trace maps, or \"joints\"" : fmt::format("[[{}]]", list);
+}
+
 constexpr std::string_view point_text = "two numbers [x, y]";
 
 std::string point_default(Vec2 p) {
@@ -257,7 +266,7 @@ bool TableReader::find_name(const Value& value, const std::string& path, std::st
   const std::vector<std::string>& names = entry == context_.list_names.end() ? nobody : entry->second;
   const std::string or_word = word.empty() ? "" : fmt::format("\"{}\" or ", word);
   if (!value.is(Value::Type::string)) {
-    fail_at(value, path, describe(value), fmt::format("{}the name of a [[{}]]", or_word, list));
+    fail_at(value, path, describe(value), fmt::format("{}the name of {}", or_word, element_of(list)));
     return false;
   }
   const bool named = std::find(names.begin(), names.end(), value.text) != names.end();
@@ -274,8 +283,8 @@ bool TableReader::find_name(const Value& value, const std::string& path, std::st
     std::copy_if(names.begin(), names.end(), std::back_inserter(known),
                  [](const auto& n) { return !n.empty(); });
     fail_at(value, path, describe(value),
-            known.empty() ? fmt::format("{}the name of a [[{}]] (there is none)", or_word, list)
-                          : fmt::format("{}the name of a [[{}]]: {}", or_word, list, list_words(known)),
+            known.empty() ? fmt::format("{}the name of {} (there is none)", or_word, element_of(list))
+                          : fmt::format("{}the name of {}: {}", or_word, element_of(list), list_words(known)),
             context_.mistakes.full() ? "" : suggestion(value.text, known));
     return false;
   }
@@ -294,10 +303,10 @@ bool TableReader::reference(std::string_view key, std::string& value, std::strin
 bool TableReader::references(std::string_view key, std::vector<int>& value, std::string_view list,
                              const Rule& rule) {
   const Value* found =
-      take(key, rule, {KeyKind::references}, fmt::format("array of names of [[{}]]", list), "[]");
+      take(key, rule, {KeyKind::references}, fmt::format("array of names of {}", elements_of(list)), "[]");
   if (found == nullptr) return false;
   if (!found->is(Value::Type::array)) {
-    fail(key, describe(*found), fmt::format("an array of names of [[{}]]", list),
+    fail(key, describe(*found), fmt::format("an array of names of {}", elements_of(list)),
          found->is(Value::Type::string) ? "write [" + to_toml(*found) + "]" : "");
     return false;
   }

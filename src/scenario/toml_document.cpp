@@ -6,7 +6,6 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <sstream>
 #include <tuple>
 
@@ -73,27 +72,41 @@ class Hazards {
   std::size_t find() {
     for (; at_ < text_.size(); ++at_) {
       const char c = text_[at_];
+      follow(c);
       if (static_cast<unsigned char>(c) >= 0x80 || is_too_deep(c)) return at_;
       if (c == '#') at_ = std::min(text_.find('\n', at_), text_.size());
-      // Within a number or a name the parser finds a mistake at a quote.
-      if ((c == '"' || c == '\'') && !follows_bare_character()) skip_string(c);
+      if ((c == '"' || c == '\'') && begins_string()) skip_string(c);
     }
     return std::string_view::npos;
   }
 
  private:
-  [[nodiscard]] bool follows_bare_character() const {
-    const auto before = static_cast<unsigned char>(at_ > 0 ? text_[at_ - 1] : '\n');
-    return std::isalnum(before) != 0 || before == '_' || before == '-' || before == '+';
+  // A quote within a number, a name or other signs begins no string: the parser reads on to the end of the value, and finds a mistake.
+  [[nodiscard]] bool begins_string() const {
+    const char before = at_ > 0 ? text_[at_ - 1] : '\n';
+    return std::string_view(" \t\r\n=,[{").find(before) != std::string_view::npos ||
+           (before == '.' && !in_value_);
   }
 
-  // Counts the open brackets, and the points of a key.
+  // Whether a value is read or a key.
+  void follow(char c) {
+    if (c == '=') in_value_ = true;
+    if (c == '\n' && open_.empty()) in_value_ = false;
+    if (c == '[') open_ += in_value_ ? '[' : '(';  // a list, or the header of a table
+    if (c == '{') open_ += c;
+    if (c == '{') in_value_ = false;
+    if (c == ',') in_value_ = !open_.empty() && open_.back() == '[';
+    if ((c == ']' || c == '}') && !open_.empty()) {
+      in_value_ = open_.back() != '(';
+      open_.pop_back();
+    }
+  }
+
+  // Whether tables and lists, or the points of a key, are too many.
   bool is_too_deep(char c) {
-    if (c == '[' || c == '{') ++brackets_;
-    if ((c == ']' || c == '}') && brackets_ > 0) --brackets_;
     if (std::string_view("[]{},=\n").find(c) != std::string_view::npos) points_ = 0;
     if (c == '.') ++points_;
-    return brackets_ > deepest_path || points_ >= deepest_path;
+    return std::ssize(open_) > deepest_path || points_ >= deepest_path;
   }
 
   // Moves to the last character of the string that begins here.
@@ -115,7 +128,9 @@ class Hazards {
 
   std::string_view text_;
   std::size_t at_ = 0;
-  int brackets_ = 0, points_ = 0;
+  std::string open_;  ///< brackets
+  bool in_value_ = false;
+  int points_ = 0;
 };
 
 bool continues_character(char c) {

@@ -13,6 +13,7 @@
 #include "coupling/point_springs.h"
 #include "geometry/quadrature.h"
 #include "simulation/build_boundary.h"
+#include "simulation/joint_laws.h"
 #include "simulation/outline.h"
 #include "simulation/refuse.h"
 #include "simulation/spring_blocks.h"
@@ -24,22 +25,6 @@ using dynamics::Block;
 using dynamics::Model;
 
 namespace {
-
-double coefficient_of(double friction_angle) {
-  return std::tan(friction_angle * std::numbers::pi / 180.0);
-}
-
-contact::JointLaw law_of(const JointProperties& joint) {
-  contact::JointLaw law{.friction_coefficient = coefficient_of(joint.friction),
-                        .cohesion = joint.cohesion,
-                        .tension = joint.tension,
-                        .normal_stiffness = joint.normal_stiffness.value_or(0.0),
-                        .stiffness_ratio = joint.stiffness_ratio};
-  if (joint.residual)
-    law.residual = contact::JointLaw::Residual{coefficient_of(joint.residual->friction),
-                                               joint.residual->cohesion, joint.residual->slip};
-  return law;
-}
 
 /// Polynomials over a block. Throws InputError where it is so thin, for its order, that they cannot be told from each other.
 block::Basis make_basis(const Polygon& polygon, const BlockProperties& properties, int order) {
@@ -236,23 +221,6 @@ void number_coefficients(Model& model) {
 
 }  // namespace
 
-int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
-  const int sets = static_cast<int>(setup.joints.joint_sets.size());
-  const int maps = static_cast<int>(setup.joints.trace_maps.size());
-  switch (label.kind) {
-    case cutting::EdgeKind::free:
-    case cutting::EdgeKind::domain:
-      return 0;  // the law of the frame is that of the frame's own edges
-    case cutting::EdgeKind::excavation:
-      return 2;
-    case cutting::EdgeKind::joint_set:
-      return 3 + label.index;
-    case cutting::EdgeKind::trace_map:
-      return 3 + sets + std::min<int>(label.index, maps - 1);
-  }
-  return 0;
-}
-
 Polygon frame_polygon(const Box& domain) {
   const double width = 0.05 * std::max(domain.size().x, domain.size().y);
   const Vec2 a = domain.min, b = domain.max;
@@ -266,12 +234,7 @@ Model build_model(const RunSetup& setup) {
   model.gravity = setup.gravity;
   model.in_situ = setup.in_situ;
   model.solver = setup.solver;
-  model.laws.push_back(law_of(setup.joints.standard));
-  model.laws.push_back(law_of(setup.joints.frame));
-  model.laws.push_back(law_of(setup.joints.standard));
-  model.laws.back().fused = true;
-  for (const JointProperties& joint : setup.joints.joint_sets) model.laws.push_back(law_of(joint));
-  for (const JointProperties& joint : setup.joints.trace_maps) model.laws.push_back(law_of(joint));
+  model.laws = joint_laws(setup);
 
   std::vector<int> joints;
   model.blocks.reserve(setup.system.blocks.size() + 1);

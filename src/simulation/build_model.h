@@ -7,9 +7,6 @@
 
 namespace keyblock::simulation {
 
-/// Index of the joint law of an edge label in Model::laws.
-int joint_law(const RunSetup& setup, cutting::EdgeLabel label);
-
 /// The fixed block around a domain: a ring of a twentieth of the larger extent.
 Polygon frame_polygon(const Box& domain);
 

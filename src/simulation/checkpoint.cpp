@@ -16,7 +16,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'001b;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'001c;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -94,6 +94,7 @@ void transfer_damage(Archive& archive, MemoryOrConst& s) {
   archive(s.reference.start);
   archive(s.reference.turn);
   archive(s.reference.base);
+  archive(s.reference.of_stage);
   archive(s.reference.height);
   archive(s.reference.width);
   archive(s.pieces);

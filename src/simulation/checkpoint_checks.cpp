@@ -184,8 +184,9 @@ bool is_damage(const DamageGauge::Memory& memory, const RunSetup& setup, const M
       });
   return r.open.size() == setup.excavations.size() && are_flags(r.open) &&
          (r.start.empty() || r.start.size() == blocks) && r.turn.size() == r.start.size() &&
-         r.base.size() == r.start.size() && is_diameter(r.height, blocks) && is_diameter(r.width, blocks) &&
-         pieces && ascends(memory.pieces, [](const JointGauge::Piece& a, const JointGauge::Piece& b) {
+         r.base.size() == r.start.size() && (r.of_stage.empty() || r.of_stage.size() == blocks) &&
+         is_diameter(r.height, blocks) && is_diameter(r.width, blocks) && pieces &&
+         ascends(memory.pieces, [](const JointGauge::Piece& a, const JointGauge::Piece& b) {
            return std::pair(a.vertex, a.edge) < std::pair(b.vertex, b.edge);
          });
 }

@@ -6,28 +6,15 @@
 #include "core/error.h"
 #include "core/index.h"
 #include "dynamics/energy.h"
+#include "simulation/joint_laws.h"
 #include "simulation/refuse.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {
 namespace {
 
-constexpr std::size_t no_law = static_cast<std::size_t>(-1);
-
-// Places in Model::laws, see build_model.cpp.
-constexpr std::size_t law_of_joints = 0, law_of_frame = 1, first_set = 3;
-
 void check_strength(const char* key, double value) {
   if (!std::isfinite(value) || value < 0.0) refuse(key, std::to_string(value), "a finite number, at least 0");
-}
-
-void put(const Strength& strength, contact::JointLaw& law) {
-  law.friction_coefficient = strength.friction_coefficient;
-  law.cohesion = strength.cohesion;
-  law.tension = strength.tension;
-  if (!law.residual) return;
-  law.residual->friction_coefficient = std::min(law.residual->friction_coefficient, law.friction_coefficient);
-  law.residual->cohesion = std::min(law.residual->cohesion, law.cohesion);
 }
 
 void check_factor(const char* key, double value) {
@@ -36,39 +23,27 @@ void check_factor(const char* key, double value) {
 
 }  // namespace
 
-std::size_t Control::law_index(std::string_view name) const {
-  const auto place = [&](const std::vector<std::string>& names) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    return found == names.end() ? no_law : static_cast<std::size_t>(found - names.begin());
-  };
-  if (name == "joints") return law_of_joints;
-  if (name == "frame") return law_of_frame;
-  if (const std::size_t set = place(setup_.joint_set_names); set != no_law) return first_set + set;
-  if (const std::size_t map = place(setup_.trace_map_names); map != no_law)
-    return first_set + setup_.joint_set_names.size() + map;
-  return no_law;
-}
-
-const contact::JointLaw* Control::law(std::string_view name) const {
-  const std::size_t index = law_index(name);
-  return index == no_law ? nullptr : &model_.laws[index];
+std::optional<contact::JointLaw> Control::law(std::string_view name) const {
+  const std::optional<std::size_t> number = find_law(setup_, name);
+  return number ? std::optional(given_laws(setup_, memory_)[*number]) : std::nullopt;
 }
 
 void Control::set_strength(std::string_view name, const Strength& strength) {
-  const std::size_t index = law_index(name);
-  if (index == no_law)
+  const std::optional<std::size_t> number = find_law(setup_, name);
+  if (!number)
     refuse("law", "\"" + std::string(name) + "\"",
            "the name of a joint set or of a trace map, \"joints\" or \"frame\"");
   check_strength("friction", strength.friction_coefficient);
   check_strength("cohesion", strength.cohesion);
   check_strength("tension", strength.tension);
-  std::vector<contact::JointLaw> laws = model_.laws;
-  put(strength, laws[index]);
-  if (laws == model_.laws) return;
-  stepper_.set_laws(std::move(laws));
+  std::vector<contact::JointLaw> laws = given_laws(setup_, memory_);
+  const contact::JointLaw before = laws[*number];
+  put_strength(strength, laws[*number]);
+  if (laws[*number] == before) return;
   memory_.strengths.clear();
-  for (const contact::JointLaw& law : model_.laws)
+  for (const contact::JointLaw& law : laws)
     memory_.strengths.push_back({law.friction_coefficient, law.cohesion, law.tension});
+  stepper_.set_laws(laws_in_stage(setup_, memory_, stage_));
 }
 
 void Control::set_load_scale(std::size_t load, double factor) {
@@ -110,7 +85,6 @@ void Control::set_velocity(std::span<const double> velocity) {
 }
 
 void restore(const ControlMemory& memory, const RunSetup& setup, dynamics::Model& model) {
-  for (std::size_t k = 0; k < memory.strengths.size(); ++k) put(memory.strengths[k], model.laws[k]);
   put_loads(memory, setup, model);
   model.spring_stiffness = memory.spring_stiffness;
   put_contact_strengths(memory, model);

@@ -16,6 +16,7 @@
 namespace keyblock::simulation {
 
 struct RunSetup;
+struct Stage;
 
 /// Strength of a joint, as in contact::JointLaw.
 struct Strength {
@@ -55,13 +56,14 @@ struct ControlMemory {
 /// that is changed acts from the next step on. Changes of velocity are work that is done from outside: Energy::input.
 class Control {
  public:
-  Control(const RunSetup& setup, dynamics::Model& model, dynamics::State& state, dynamics::Stepper& stepper,
-          ControlMemory& memory)
-      : setup_(setup), model_(model), state_(state), stepper_(stepper), memory_(memory) {}
+  /// stage: the one at hand.
+  Control(const RunSetup& setup, const Stage& stage, dynamics::Model& model, dynamics::State& state,
+          dynamics::Stepper& stepper, ControlMemory& memory)
+      : setup_(setup), stage_(stage), model_(model), state_(state), stepper_(stepper), memory_(memory) {}
 
-  /// The law of a joint set, a trace map, `joints` (all others) or `frame`; null: there is no such name.
-  [[nodiscard]] const contact::JointLaw* law(std::string_view name) const;
-  /// Friction, cohesion and tension of joints, the names as for law(). A bond that has broken stays broken. Throws InputError for an
+  /// The law of a joint set, a trace map, `joints` (all others) or `frame`, before a stage divides its strength; none: there is no such name.
+  [[nodiscard]] std::optional<contact::JointLaw> law(std::string_view name) const;
+  /// Friction, cohesion and tension of joints, likewise. A bond that has broken stays broken. Throws InputError for an
   /// unknown name, and for strengths that are negative or no number.
   void set_strength(std::string_view name, const Strength& strength);
   /// Of single contacts, beside what was given before: what is not a number stays as it was. Throws InputError for what are no vertex and edge
@@ -100,9 +102,9 @@ class Control {
   void with_input(const Change& change);
   void check_spring(std::size_t spring) const;
   void check_contact(const contact::ContactStrength& strength) const;
-  [[nodiscard]] std::size_t law_index(std::string_view name) const;
 
   const RunSetup& setup_;
+  const Stage& stage_;
   dynamics::Model& model_;
   dynamics::State& state_;
   dynamics::Stepper& stepper_;

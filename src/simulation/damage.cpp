@@ -121,6 +121,17 @@ double DamageGauge::fall_distance(const dynamics::Block& block) const {
   return model_.gravity == Vec2{} ? 0.0 : fall_share * std::sqrt(block.area);
 }
 
+Vec2 DamageGauge::place_on_base(std::size_t block, const dynamics::State& state) const {
+  return centroid_now(model_.blocks[block], state) - base_.displacement(state, model_.blocks[block].centroid);
+}
+
+void DamageGauge::begin_stage(const dynamics::State& state) {
+  if (!started()) return;
+  reference_.of_stage.clear();
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b)
+    reference_.of_stage.push_back(place_on_base(b, state));
+}
+
 Vec2 DamageGauge::displacement(std::size_t block, const dynamics::State& state) const {
   const Vec2 base = base_.displacement(state, model_.blocks[block].centroid) - reference_.base[block];
   return centroid_now(model_.blocks[block], state) - reference_.start[block] - base;
@@ -210,6 +221,11 @@ Damage DamageGauge::measure(const dynamics::State& state) {
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
     damage.displacement_max = std::max(damage.displacement_max, norm(displacement(b, state)));
+    if (!reference_.of_stage.empty())
+      damage.stage_displacement =
+          std::max(damage.stage_displacement, norm(place_on_base(b, state) - reference_.of_stage[b]));
+    const bool goes = moving_[b] != 0 || speed(b, state) > setup_.damage.loosened_distance;
+    if (goes || status_now[b] == BlockStatus::fallen) damage.moving_area += model_.blocks[b].area;
     const double turned = std::remainder(turn_of(model_, b) - reference_.turn[b], 2.0 * std::numbers::pi);
     damage.rotation_max = std::max(damage.rotation_max, std::abs(turned) * 180.0 / std::numbers::pi);
     if (status_now[b] == BlockStatus::loosened) damage.loosened_area += model_.blocks[b].area;

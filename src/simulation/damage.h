@@ -36,6 +36,8 @@ class DamageGauge {
   [[nodiscard]] bool started() const { return !reference_.start.empty(); }
   /// Takes the present state as the reference. Blocks of the excavations are gone by now.
   void start(const dynamics::State& state, std::span<const contact::Contact> contacts);
+  /// A stage begins, after its excavations: what Damage::stage_displacement is measured from.
+  void begin_stage(const dynamics::State& state);
   /// A look at what a block that falls later would take away with it.
   void watch(const dynamics::State& state);
 
@@ -60,7 +62,9 @@ class DamageGauge {
     std::vector<Vec2> start;         ///< centroids, per block
     std::vector<double> turn;        ///< rad, of every block against its reference position
     std::vector<Vec2> base;          ///< m, displacement of the base, per block
-    Diameter height, width;          ///< of the first excavation
+    std::vector<Vec2>
+        of_stage;            ///< centroids less the displacement of the base, as the stage began, per block
+    Diameter height, width;  ///< of the first excavation
   };
   /// All that is remembered, for checkpoints.
   struct Memory {
@@ -79,6 +83,8 @@ class DamageGauge {
   void find_movers(const dynamics::State& state, StageRecord& record) const;
   /// m; 0: nothing falls.
   [[nodiscard]] double fall_distance(const dynamics::Block& block) const;
+  /// m, of a centroid less the displacement of the base.
+  [[nodiscard]] Vec2 place_on_base(std::size_t block, const dynamics::State& state) const;
   /// m, of a centroid against the base since the reference.
   [[nodiscard]] Vec2 displacement(std::size_t block, const dynamics::State& state) const;
 

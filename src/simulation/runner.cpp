@@ -15,6 +15,7 @@
 #include "simulation/excavate.h"
 #include "simulation/feasibility.h"
 #include "simulation/install.h"
+#include "simulation/joint_laws.h"
 #include "simulation/planned_changes.h"
 #include "simulation/run_checks.h"
 #include "simulation/step_count.h"
@@ -112,10 +113,15 @@ void Runner::resume() {
   check(mistake_in_state(now_, setup_, model_));
   model_.surface.present = now_.present;
   restore(now_.control, setup_, model_);
+  model_.laws = laws_in_stage(setup_, now_.control, planned_stage());
   orders_changed();
   gauge_.restore(std::move(now_.damage));
   opening_.memory() = now_.opening;
   wall_before_ = now_.wall_time;
+}
+
+const Stage& Runner::planned_stage() const {
+  return setup_.stages[std::min(at(now_.stage), setup_.stages.size() - 1)];
 }
 
 bool Runner::done() const {
@@ -217,8 +223,11 @@ void Runner::begin_stage() {
     excavate(setup_, record.stage, model_, now_.mechanics, *stepper_, gauge_, opening_);
     install(setup_, record.stage, model_, now_.mechanics);
     opening_.begin_stage(now_.stage, now_.mechanics);
+    gauge_.begin_stage(now_.mechanics);
   }
   model_.joints_wear = wears_joints(setup_.stages, at(now_.stage));
+  if (auto laws = laws_in_stage(setup_, now_.control, record.stage); laws != model_.laws)
+    stepper_->set_laws(std::move(laws));
   now_.present = model_.surface.present;
   observer_.stage_begin(now_.stage, record);
   if (is_new) reporter_.frame(now_);

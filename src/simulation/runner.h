@@ -70,11 +70,15 @@ class Runner {
   /// m/s², of the ground at the time of the state; zero outside of shaking stages.
   [[nodiscard]] Vec2 ground_acceleration() const;
   /// Changes the running model: between two steps, or in RunOptions::after_step.
-  [[nodiscard]] Control control() { return {setup_, model_, now_.mechanics, *stepper_, now_.control}; }
+  [[nodiscard]] Control control() {
+    return {setup_, planned_stage(), model_, now_.mechanics, *stepper_, now_.control};
+  }
   /// Index of the stage at hand, or of the one that comes next.
   [[nodiscard]] int stage() const { return now_.stage; }
 
  private:
+  /// The stage at hand, or the one that comes next; the last one when the run is done.
+  [[nodiscard]] const Stage& planned_stage() const;
   void begin();
   void resume();
   void orders_changed();

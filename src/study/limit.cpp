@@ -122,7 +122,8 @@ LimitTrial limit_trial(const LimitRequest& request, double value, const RunResul
   trial.run = run.key;
   trial.measure = simulation::damage_value(damage, criterion.measure);
   trial.standing = deciding.standing;
-  trial.met = criterion.is_met(trial.measure, deciding);
+  trial.moving_area = damage.moving_area;
+  trial.met = criterion.is_met(trial.measure, run.block_size, deciding);
   trial.state_hash = run.state_hash;
   trial.movers = deciding.movers;
   trial.heaviest = deciding.heaviest;

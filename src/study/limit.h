@@ -12,6 +12,9 @@
 /// A limit: the value of a key of the scenario at which a criterion first holds.
 namespace keyblock::study {
 
+/// The key of the factor of safety.
+inline constexpr const char* safety_key = "safety.strength_factor";
+
 struct LimitRequest {
   std::string key;  ///< key path of a number
   double from = 0.0, to = 0.0;
@@ -38,6 +41,7 @@ struct LimitTrial {
   simulation::Movers movers = {};
   std::string heaviest = {};  ///< name of the heaviest of them; empty for cut blocks
   double pga = 0.0;           ///< m/s², of the stage that the key is of; 0: none
+  double moving_area = 0.0;   ///< m², of blocks that move or have fallen
 
   /// Blocks fall or move.
   [[nodiscard]] bool goes() const;
@@ -65,6 +69,9 @@ struct RealizationLimit {
   std::string error;               ///< why a trial failed; empty: none has
   /// A trial at which the criterion does not hold, and blocks fall or move all the same: the one nearest to `from`.
   std::optional<LimitTrial> moves = {};
+  /// Of a criterion with two ends: the trial from which on blocks do not stand. None: they stand in all of them.
+  std::optional<LimitTrial> falls = {};
+  double stands_to = 0.0;  ///< value of the trial next to it, in which they stand
 
   [[nodiscard]] const LimitTrial* trial_at(double value) const;
   [[nodiscard]] bool found() const { return error.empty() && state.status == Bisection::Status::found; }

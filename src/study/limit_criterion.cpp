@@ -19,6 +19,9 @@ using simulation::StageKind;
 using simulation::Standing;
 
 constexpr const char* distance_measure = "displacement_max_m";
+constexpr const char* distance_in_stage = "stage_displacement_m";
+/// Of the block size, that rock goes in a stage before it has given way.
+constexpr double way_share = 0.002;
 
 // Of the size of the rock: an outline that comes so near to its edge reaches it.
 constexpr double at_the_edge = 1e-6;
@@ -46,14 +49,20 @@ constexpr LimitDefault defaults[] = {
 
 std::string LimitCriterion::text() const {
   const Measure& m = measures()[find_measure(measure).value()];
-  if (collapse) return "blocks that do not stand";
-  return fmt::format("{} of more than {:.6g}{}{}", m.title, above, m.unit.empty() ? "" : " ", m.unit);
+  if (!by_measure) return "blocks that do not stand";
+  const std::string also = by_standing ? "blocks that do not stand, or " : "";
+  if (above_share)
+    return fmt::format("{}{} of more than {:.3g} % of the block size", also, m.title, 100.0 * *above_share);
+  return fmt::format("{}{} of more than {:.6g}{}{}", also, m.title, above, m.unit.empty() ? "" : " ", m.unit);
 }
 
-bool LimitCriterion::is_met(double measured, const StageMeasures& deciding) const {
-  if (collapse) return deciding.standing != Standing::stands && deciding.standing != Standing::rocks;
+bool LimitCriterion::is_met(double measured, double block_size, const StageMeasures& deciding) const {
+  if (by_standing && deciding.standing != Standing::stands && deciding.standing != Standing::rocks)
+    return true;
+  if (!by_measure) return false;
   const bool goes_on = deciding.kind == StageKind::settle && deciding.standing == Standing::moves;
-  return measured > above || (goes_on && measure == distance_measure);
+  return measured > (above_share ? *above_share * block_size : above) ||
+         (goes_on && measure == distance_measure);
 }
 
 const StageMeasures& deciding_stage(const RunResult& run) {
@@ -65,7 +74,7 @@ const StageMeasures& deciding_stage(const RunResult& run) {
 }
 
 LimitCriterion limit_criterion(const std::string& name, std::optional<double> above, double loosened) {
-  LimitCriterion criterion{name, name, above.value_or(0.0), false};
+  LimitCriterion criterion{.name = name, .measure = name, .above = above.value_or(0.0)};
   if (name == "fallen") {
     criterion.measure = "fallen_area_m2";
   } else if (name == "moved") {
@@ -73,15 +82,21 @@ LimitCriterion limit_criterion(const std::string& name, std::optional<double> ab
     criterion.above = above.value_or(loosened);
   } else if (name == "collapsed") {
     criterion.measure = distance_measure;
-    criterion.collapse = true;
+    criterion.by_measure = false;
+    criterion.by_standing = true;
     if (above)
       refuse("--above", fmt::format("{}", *above), "nothing, as collapsed has no threshold",
              "--until fallen, moved or a measure such as loosened_area_m2 has one");
+  } else if (name == "gives_way") {
+    criterion.measure = distance_in_stage;
+    criterion.by_standing = true;
+    if (!above) criterion.above_share = way_share;
   } else if (!find_measure(name)) {
-    std::vector<std::string> words{"fallen", "moved", "collapsed"};
+    std::vector<std::string> words{"fallen", "moved", "collapsed", "gives_way"};
     for (const Measure& m : measures()) words.push_back(m.name);
     const std::string hint = scenario::suggestion(name, words);
-    refuse("--until", '"' + name + '"', "fallen, moved, collapsed or a measure of summary.json", hint);
+    refuse("--until", '"' + name + '"', "fallen, moved, collapsed, gives_way or a measure of summary.json",
+           hint);
   }
   if (!std::isfinite(criterion.above)) refuse("--above", fmt::format("{}", criterion.above), "a number");
   return criterion;
@@ -126,7 +141,7 @@ const LimitDefault& limit_default(const scenario::Scenario& scenario) {
 bool needs_rest(const LimitCriterion& criterion, const scenario::Scenario& scenario) {
   const simulation::Stage& last = scenario.stages.back();
   const bool waits = last.kind == StageKind::rest && last.until_still;
-  return criterion.collapse && !waits && limit_end(scenario) == LimitEnd::shaken;
+  return criterion.by_standing && !waits && limit_end(scenario) == LimitEnd::shaken;
 }
 
 }  // namespace keyblock::study

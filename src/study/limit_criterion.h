@@ -11,25 +11,28 @@ namespace keyblock::study {
 
 /// Told by how the run is at the end of its last stage.
 struct LimitCriterion {
-  std::string name;     ///< as asked for: "fallen", "moved", "collapsed", or a measure
+  std::string name;     ///< as asked for: "fallen", "moved", "collapsed", "gives_way", or a measure
   std::string measure;  ///< by its name in summary.json; of "collapsed", what is told beside the verdict
   double above = 0.0;   ///< it holds when the measure is larger; in the unit of the measure
-  bool collapse =
-      false;  ///< it holds when the blocks do not stand (record/standing.h); `above` is then of no use
-  std::string why = {};  ///< it is the default for this model; empty: it was asked for
+  std::optional<double> above_share = {};  ///< in the place of `above`: of the block size, of a measure in m
+  bool by_measure = true;                  ///< it holds when the measure is larger
+  bool by_standing = false;                ///< it holds when the blocks do not stand (record/standing.h)
+  std::string why = {};                    ///< it is the default for this model; empty: it was asked for
 
   /// `fallen area of more than 0.1 m²`.
   [[nodiscard]] std::string text() const;
   /// Of a run that ended so (deciding_stage). What a static stage calls moving goes beyond any distance; blocks that rock come to rest.
-  [[nodiscard]] bool is_met(double measured, const StageMeasures& deciding) const;
+  [[nodiscard]] bool is_met(double measured, double block_size, const StageMeasures& deciding) const;
+  /// Whether from where on blocks do not stand is another question than from where on it holds.
+  [[nodiscard]] bool has_two_ends() const { return by_measure && by_standing; }
 };
 
 /// The stage that tells how the blocks of a run are: the last one; or, where they stand at its end, the last static one, if that called blocks
 /// moving. They may have slid a part of a way that has no end, and lie still.
 const StageMeasures& deciding_stage(const RunResult& run);
 
-/// `fallen`, `moved`, `collapsed` or the name of a measure. Without `above`: the `loosened` distance of the scenario, m, for
-/// "moved", 0 for all others. Throws InputError.
+/// `fallen`, `moved`, `collapsed`, `gives_way` or the name of a measure. Without `above`: the `loosened` distance of the scenario, m, for
+/// "moved", a share of the block size for "gives_way", 0 for all others. Throws InputError.
 LimitCriterion limit_criterion(const std::string& name, std::optional<double> above, double loosened);
 
 /// What a scenario is a model of.

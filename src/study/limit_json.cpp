@@ -43,6 +43,7 @@ ordered_json trial_json(const LimitTrial& trial) {
   return {{"value", trial.value},
           {"met", trial.met},
           {"measure", number_or_null(trial.measure)},
+          {"moving_area_m2", number_or_null(trial.moving_area)},
           {"standing", simulation::standing_name(trial.standing)},
           {"movers", results::movers_json(trial.movers)},
           {"run", "runs/" + trial.run},
@@ -63,6 +64,12 @@ ordered_json limits_json(const RealizationLimit& limit) {
   return all;
 }
 
+/// From where on blocks do not stand, and up to where they do.
+ordered_json falls_json(const RealizationLimit& limit) {
+  if (!limit.falls) return {};
+  return {{"stands_to", limit.stands_to}, {"trial", trial_json(*limit.falls)}};
+}
+
 ordered_json realization_json(const RealizationLimit& limit) {
   ordered_json trials = ordered_json::array(), bracket, beyond, error;
   for (const LimitTrial& trial : limit.trials) trials.push_back(trial_json(trial));
@@ -74,6 +81,7 @@ ordered_json realization_json(const RealizationLimit& limit) {
           {"bracket", bracket},
           {"limit", limit.found() ? number_or_null(limit.limit()) : ordered_json()},
           {"just_beyond", beyond},
+          {"falls", falls_json(limit)},
           {"limits", limits_json(limit)},
           {"moves_already", limit.moves ? trial_json(*limit.moves) : ordered_json()},
           {"error", error},
@@ -111,7 +119,8 @@ std::string limit_csv(const LimitResult& result) {
 
 std::string limit_json(const LimitResult& result) {
   const LimitRequest& request = result.request;
-  ordered_json above = request.criterion.collapse ? ordered_json() : ordered_json(request.criterion.above);
+  const bool has_threshold = request.criterion.by_measure && !request.criterion.above_share;
+  ordered_json above = has_threshold ? ordered_json(request.criterion.above) : ordered_json();
   ordered_json realizations = ordered_json::array();
   for (const RealizationLimit& limit : result.realizations) realizations.push_back(realization_json(limit));
   const LimitQuantile median = result.median();
@@ -141,6 +150,7 @@ std::string limit_json(const LimitResult& result) {
                           {"why", why},
                           {"measure", request.criterion.measure},
                           {"above", above},
+                          {"above_share", results::or_null(request.criterion.above_share)},
                           {"since", since},
                           {"tolerance", request.tolerance},
                           {"scan", request.scan},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -89,22 +90,43 @@ Scale key_scale(const LimitRequest& request) {
           Chart::width - Chart::right};
 }
 
+/// What is drawn of trials over the key.
+struct Curve {
+  std::string title;  ///< with its unit
+  double LimitTrial::*value;
+  std::optional<double> threshold;  ///< the same for all trials
+
+  /// What the criterion looks at.
+  static Curve of_criterion(const LimitCriterion& criterion) {
+    const bool has_threshold = criterion.by_measure && !criterion.above_share;
+    return {title_of(criterion.measure), &LimitTrial::measure,
+            has_threshold ? std::optional(criterion.above) : std::nullopt};
+  }
+  static Curve of_moving_area() { return {title_of("moving_area_m2"), &LimitTrial::moving_area, {}}; }
+
+ private:
+  static std::string title_of(const std::string& measure) {
+    const Measure& m = measures()[find_measure(measure).value()];
+    return m.title + (m.unit.empty() ? "" : ", " + m.unit);
+  }
+};
+
 class Plot {
  public:
-  explicit Plot(const LimitResult& result)
+  Plot(const LimitResult& result, Curve curve)
       : result_(result),
         request_(result.request),
+        curve_(std::move(curve)),
         x_(key_scale(request_)),
         y_{range().first, range().second, Chart::height - Chart::bottom, Chart::top} {}
 
   [[nodiscard]] std::string draw() const {
-    const Measure& m = measures()[find_measure(request_.criterion.measure).value()];
     std::string svg = fmt::format(
         "<svg class=\"plot\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{} of every trial over "
         "{}\">",
-        Chart::width, Chart::height, xml_text(m.title), xml_text(request_.key));
+        Chart::width, Chart::height, xml_text(curve_.title), xml_text(request_.key));
     for (const RealizationLimit& limit : result_.realizations) svg += bracket(limit);
-    svg += axes(xml_text(m.title + (m.unit.empty() ? "" : ", " + m.unit)));
+    svg += axes(xml_text(curve_.title));
     for (const RealizationLimit& limit : result_.realizations)
       for (const LimitTrial& trial : limit.trials) svg += point(limit, trial);
     return svg +
@@ -116,13 +138,14 @@ class Plot {
  private:
   /// Of all measures, the threshold and zero.
   [[nodiscard]] std::pair<double, double> range() const {
-    const double above = request_.criterion.collapse ? 0.0 : request_.criterion.above;
+    const double above = curve_.threshold.value_or(0.0);
     double low = std::min(0.0, above), high = std::max(0.0, above);
     for (const RealizationLimit& limit : result_.realizations) {
       for (const LimitTrial& trial : limit.trials) {
-        if (!std::isfinite(trial.measure)) continue;
-        low = std::min(low, trial.measure);
-        high = std::max(high, trial.measure);
+        const double value = trial.*curve_.value;
+        if (!std::isfinite(value)) continue;
+        low = std::min(low, value);
+        high = std::max(high, value);
       }
     }
     return {low, high > low ? high + room * (high - low) : low + 1.0};
@@ -147,23 +170,25 @@ class Plot {
         "text-anchor=\"end\">{3:.3g}</text><text transform=\"translate(16 {4:.0f}) rotate(-90)\" "
         "text-anchor=\"middle\">{5}</text>",
         x_.begin - 6.0, y_.begin, y_.end + 5.0, y_.high, 0.5 * (y_.begin + y_.end), title, y_.low);
-    if (!request_.criterion.collapse)
+    if (curve_.threshold)
       svg += fmt::format("<path class=\"threshold\" d=\"M{:.0f} {:.2f}H{:.0f}\"/>", x_.begin,
-                         y_.at(request_.criterion.above), x_.end);
+                         y_.at(*curve_.threshold), x_.end);
     return svg;
   }
 
   [[nodiscard]] std::string point(const RealizationLimit& limit, const LimitTrial& trial) const {
-    if (!std::isfinite(trial.measure)) return {};
+    const double value = trial.*curve_.value;
+    if (!std::isfinite(value)) return {};
     return fmt::format(
         "<circle class=\"{}\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\"><title>realization {}: at {}: "
         "{}</title></circle>",
-        trial.met ? "yes" : "no", x_.at(trial.value), y_.at(trial.measure), limit.realization,
+        trial.met ? "yes" : "no", x_.at(trial.value), y_.at(value), limit.realization,
         quantity(trial.value, result_.unit, 6), xml_text(outcome_text(request_, trial)));
   }
 
   const LimitResult& result_;
   const LimitRequest& request_;
+  Curve curve_;
   Scale x_, y_;
 };
 
@@ -267,7 +292,9 @@ std::string drawings(const fs::path& directory, const LimitResult& result) {
   }
   if (figures.empty()) return {};
   return "<section><h2>Just beyond the limit</h2><div class=\"drawings" +
-         std::string(count == 1 ? " one" : "") + "\">" + figures + "</div></section>";
+         std::string(count == 1 ? " one" : "") + "\">" + figures +
+         "</div><p>Arrows: how blocks move in the last static stage. Blue: joints beside them that "
+         "slip.</p></section>";
 }
 
 std::string trial_table(const fs::path& directory, const LimitResult& result) {
@@ -303,20 +330,37 @@ std::string warning_list(const LimitResult& result) {
   return texts;
 }
 
+/// Of the factor of safety, how much rock moves at which factor, if that is not the criterion.
+std::string moving_area(const LimitResult& result) {
+  if (result.request.key != safety_key || result.request.criterion.measure == "moving_area_m2") return {};
+  return "<section>" + Plot(result, Curve::of_moving_area()).draw() + "</section>";
+}
+
+std::string map_section(const LimitResult& result, const HoldMap& map) {
+  const std::string svg = hold_map_svg(map, result);
+  if (svg.empty()) return {};
+  return "<section><h2>Up to which value rock stays in place</h2>" + svg +
+         "<p>Of the trials between --from and the first in which a place is loosened, the last. More trials "
+         "tell "
+         "more levels apart: --sweep or --scan. <a href=\"map.csv\">map.csv</a></p></section>";
+}
+
 }  // namespace
 
-std::string limit_page(const fs::path& directory, const LimitResult& result) {
+std::string limit_page(const fs::path& directory, const LimitResult& result, const HoldMap& map) {
   return fmt::format(
       "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>Limit: "
       "{0}</title>{1}</head><body><h1>{0}</h1><section><h2>Limit of {2}</h2>{3}{12}</section><div "
       "class=\"screen\"><div><section>{4}"
-      "</section>{11}</div>{5}</div>{10}{6}<p>keyblock {7}, {8}, seed {9}; <a "
+      "</section>{13}{11}</div><div>{5}{14}</div></div>{10}{6}<p>keyblock {7}, {8}, seed {9}; <a "
       "href=\"limit.json\">limit.json</a></p></body></html>\n",
       xml_text(result.title.empty() ? result.scenario : result.title), page_style,
-      xml_text(result.request.key), words(result), Plot(result).draw(), drawings(directory, result),
+      xml_text(result.request.key), words(result),
+      Plot(result, Curve::of_criterion(result.request.criterion)).draw(), drawings(directory, result),
       trial_table(directory, result), xml_text(result.version), xml_text(result.scenario), result.seed,
-      SharePlot(result).draw(), ground_table(result), warning_list(result));
+      SharePlot(result).draw(), ground_table(result), warning_list(result), moving_area(result),
+      map_section(result, map));
 }
 
 }  // namespace keyblock::study

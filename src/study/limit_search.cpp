@@ -34,13 +34,16 @@ std::string value_text(double value) {
   return text;
 }
 
+scenario::Scenario scenario_at(const Plan& plan, const LimitRequest& request, double value) {
+  std::vector<std::string> overrides = plan.overrides;
+  overrides.push_back(request.key + "=" + value_text(value));
+  return scenario::parse_scenario_text(plan.text, plan.scenario, overrides, scenario::StudyTable::leave_out);
+}
+
 /// What is odd at both ends of the search is so all over it; the rest belongs to the run in question. Throws InputError where an end is wrong.
 std::vector<std::string> warnings_of_ends(const Plan& plan, const LimitRequest& request) {
   const auto warnings_at = [&](double end) {
-    std::vector<std::string> overrides = plan.overrides;
-    overrides.push_back(request.key + "=" + value_text(end));
-    return scenario::check_inputs(
-        scenario::parse_scenario_text(plan.text, plan.scenario, overrides, scenario::StudyTable::leave_out));
+    return scenario::check_inputs(scenario_at(plan, request, end));
   };
   std::vector<std::string> of_both = warnings_at(request.from);
   const std::vector<std::string> of_other = warnings_at(request.to);
@@ -66,8 +69,9 @@ void check_request(const LimitRequest& request) {
 /// A stage before the last one.
 void check_since(const LimitRequest& request, std::span<const simulation::Stage> stages) {
   if (request.since.empty()) return;
-  if (request.criterion.collapse)
-    refuse("--since", '"' + request.since + '"', "nothing, as collapsed is how the blocks are at the end");
+  if (request.criterion.by_standing)
+    refuse("--since", '"' + request.since + '"',
+           "nothing, as " + request.criterion.name + " is how the blocks are at the end");
   std::vector<std::string> earlier;
   for (std::size_t k = 0; k + 1 < stages.size(); ++k) earlier.push_back(stages[k].name);
   if (std::ranges::find(earlier, request.since) != earlier.end()) return;
@@ -102,6 +106,16 @@ class Search {
       update();  // by the runs that had ended
       return false;
     }
+  }
+
+  /// Of one realization.
+  HoldMap holds() {
+    std::vector<std::pair<double, const std::vector<simulation::BlockStatus>*>> trials;
+    if (result_.realizations.size() > 1) return {};
+    for (const LimitTrial& trial : result_.realizations.front().trials)
+      trials.emplace_back(
+          trial.value, &state_of(planned(result_.realizations.front().realization, trial.value)).result.map);
+    return hold_map(plan_.grid, plan_.outlines, result_.request.from, std::move(trials));
   }
 
  private:
@@ -144,7 +158,7 @@ class Search {
             limit_trial(result_.request, value, state_of(planned(limit.realization, value)).result));
       for (const LimitTrial& trial : limit.trials)
         if (told_[k].insert(trial.value).second) options_.trial(limit, trial);
-      look_for_moving(k);
+      result_.request.criterion.has_two_ends() ? look_for_falling(k) : look_for_moving(k);
     }
   }
 
@@ -173,6 +187,27 @@ class Search {
     if (!second_[k]) second_[k].emplace(from, limit.moves->value, result_.request.tolerance);
     const Bisection::State state = second_[k]->follow(known_to_go(limit.realization));
     if (state.status == Bisection::Status::found) limit.moves = trial_of(limit.realization, state.met);
+  }
+
+  /// Of a search that has found where rock moves: from where on blocks do not stand.
+  void look_for_falling(std::size_t k) {
+    RealizationLimit& limit = result_.realizations[k];
+    if (!limit.found()) return;
+    const double from = result_.request.from;
+    const LimitTrial* first = nullptr;
+    for (const LimitTrial& trial : limit.trials) {
+      const bool is_nearer = first == nullptr || std::abs(trial.value - from) < std::abs(first->value - from);
+      if (trial.goes() && is_nearer) first = &trial;
+    }
+    if (first == nullptr) return;
+    limit.falls = *first;
+    limit.stands_to = limit.state.not_met;
+    if (first->value == limit.state.met) return;
+    if (!second_[k]) second_[k].emplace(limit.state.not_met, first->value, result_.request.tolerance);
+    const Bisection::State state = second_[k]->follow(known_to_go(limit.realization));
+    if (state.status != Bisection::Status::found) return;
+    limit.falls = trial_of(limit.realization, state.met);
+    limit.stands_to = state.not_met;
   }
 
   /// What is to be run of a realization.
@@ -266,11 +301,27 @@ LimitResult empty_limit(const Plan& plan, const LimitRequest& request) {
   return result;
 }
 
-/// That which is asked for, or else that of the model.
-LimitCriterion chosen_criterion(const scenario::Scenario& scenario, const std::string& until,
-                                std::optional<double> above) {
+/// Of the factor of safety: nothing may give way, or no more than an area.
+LimitCriterion criterion_of_safety(const scenario::SafetySpec& safety) {
+  const bool has_area = safety.area > 0.0;
+  LimitCriterion criterion = has_area ? limit_criterion("moving_area_m2", safety.area, 0.0)
+                                      : limit_criterion("gives_way", safety.moved, 0.0);
+  criterion.why =
+      has_area ? "so much rock may move by [safety] area"
+               : "rock has given way that has moved since strength was reduced, or that does not stand";
+  return criterion;
+}
+
+/// That which is asked for, or else that of the key or of the model.
+LimitCriterion chosen_criterion(const scenario::Scenario& scenario, const std::string& key,
+                                const std::string& until, std::optional<double> above) {
   const double loosened = scenario.damage.loosened_distance;
   if (!until.empty()) return limit_criterion(until, above, loosened);
+  if (key == safety_key) {
+    if (above)
+      refuse("--above", fmt::format("{}", *above), "nothing, as [safety] moved and area are the thresholds");
+    return criterion_of_safety(scenario.safety.value());
+  }
   const LimitDefault& row = limit_default(scenario);
   LimitCriterion criterion = limit_criterion(row.criterion, above, loosened);
   criterion.why = fmt::format("--until {} is the default for {}: {}", row.criterion, row.what, row.why);
@@ -284,12 +335,11 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
   check_request(request);
   std::vector<std::string> warnings;
   Plan plan = make_plan(scenario, version, &warnings);
-  const scenario::Scenario read = scenario::parse_scenario_text(plan.text, plan.scenario, plan.overrides,
-                                                                scenario::StudyTable::leave_out);
-  request.criterion = chosen_criterion(read, until, above);
+  const scenario::Scenario read = scenario_at(plan, request, request.from);
+  request.criterion = chosen_criterion(read, request.key, until, above);
   request.has_rest = needs_rest(request.criterion, read);
   request.finds_moving =
-      !request.criterion.collapse && std::string_view(limit_default(read).criterion) != "fallen";
+      !request.criterion.by_standing && std::string_view(limit_default(read).criterion) != "fallen";
   if (request.scan == 0) request.scan = scan_of(request.key);
   if (request.realizations > 1 && read.joint_sets.empty())
     warnings.push_back(
@@ -316,11 +366,14 @@ LimitResult find_limit(const fs::path& directory, Plan plan, const LimitRequest&
                        const LimitOptions& options, bool& interrupted) {
   LimitResult result = empty_limit(plan, request);
   enter_limit(directory, plan, options.resume, limit_json(result));
-  interrupted = !Search(directory, std::move(plan), result, options).run();
+  Search search(directory, std::move(plan), result, options);
+  interrupted = !search.run();
   result.complete = !interrupted;
   write_file_atomically(limit_path(directory), limit_json(result));
   write_file_atomically(directory / "limits.csv", limit_csv(result));
-  write_file_atomically(directory / "report.html", limit_page(directory, result));
+  const HoldMap map = search.holds();
+  if (!map.empty()) write_file_atomically(directory / "map.csv", hold_map_csv(map));
+  write_file_atomically(directory / "report.html", limit_page(directory, result, map));
   return result;
 }
 

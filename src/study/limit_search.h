@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "study/hold_map.h"
 #include "study/limit.h"
 #include "study/plan.h"
 #include "study/workers.h"
@@ -25,7 +26,8 @@ struct LimitOptions {
                                                                              const LimitTrial&) {};
 };
 
-/// Runs the trials of all realizations until every bisection has ended, and leaves limit.json, limits.csv and report.html in the folder.
+/// Runs the trials of all realizations until every bisection has ended, and leaves limit.json, limits.csv, report.html and, of one
+/// realization whose rock moves, map.csv in the folder.
 ///
 /// A round runs the next trial of every realization; where that is less than there are workers, also trials that may come after
 /// it. Those have no say unless the bisection comes to them: the result is the same for any number of workers, and, as
@@ -36,8 +38,8 @@ struct LimitOptions {
 LimitResult find_limit(const std::filesystem::path& directory, Plan plan, const LimitRequest& request,
                        const LimitOptions& options, bool& interrupted);
 
-/// The page of a limit: measure over value for all trials, the brackets, and pictures of what happens just beyond. It has no program,
-/// and asks nothing of the network.
-std::string limit_page(const std::filesystem::path& directory, const LimitResult& result);
+/// The page of a limit: measure over value for all trials, the brackets, pictures of what happens just beyond, and up to where which rock holds. It
+/// has no program, and asks nothing of the network.
+std::string limit_page(const std::filesystem::path& directory, const LimitResult& result, const HoldMap& map);
 
 }  // namespace keyblock::study

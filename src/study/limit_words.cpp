@@ -25,6 +25,7 @@ struct Subject {
   std::string_view key, text;
 };
 constexpr Subject subjects[] = {
+    {"safety.strength_factor", "the factor of safety"},
     {"joints.strength_factor", "the factor of safety"},
     {"joint_set._.strength_factor", "the factor of safety of {}"},
     {"trace_map._.strength_factor", "the factor of safety of {}"},
@@ -135,15 +136,18 @@ std::string scan_text(const LimitResult& result, const RealizationLimit& limit) 
   const LimitRequest& request = result.request;
   if (request.scan <= 1 || !limit.found()) return {};
   return fmt::format(
-      " The scan looked every {}: what holds in a narrower range is not seen, and --scan looks more often.",
+      " The scan looked every {}: what holds in a narrower range is not seen, and more parts look more "
+      "often.",
       quantity(std::abs(request.to - request.from) / request.scan, result.unit, least_digits));
 }
 
 /// What blocks do before the criterion holds.
 std::string already_text(const LimitResult& result, const RealizationLimit& limit) {
   if (!limit.moves) return {};
-  return fmt::format("at {} already {}; --until collapsed asks for that",
-                     quantity(limit.moves->value, result.unit, digits_of_others), movers_text(*limit.moves));
+  const char* instead = result.request.key == safety_key ? "without an area this is asked for"
+                                                         : "--until collapsed asks for that";
+  return fmt::format("at {} already {}; {}", quantity(limit.moves->value, result.unit, digits_of_others),
+                     movers_text(*limit.moves), instead);
 }
 
 std::string pga_text(const RealizationLimit& limit) {
@@ -152,9 +156,26 @@ std::string pga_text(const RealizationLimit& limit) {
   return fmt::format(" (PGA {:.3g} m/s²)", beyond->pga * limit.limit() / beyond->value);
 }
 
+/// "The factor of safety is 1.29: the rock holds to 1.278, moves from 1.295 (…) and falls from 1.304 (…)."
+std::string both_ends_text(const LimitResult& result, const RealizationLimit& limit) {
+  const Bisection::Bracket bracket{limit.state.not_met, limit.state.met};
+  const Limit words{result, bracket};
+  const auto from = [&](const char* does, const LimitTrial& trial) {
+    return fmt::format("{} from {} ({})", does, words.end(trial.value), outcome_text(result.request, trial));
+  };
+  const LimitTrial& beyond = *limit.just_beyond();
+  const bool falls_at_once = limit.falls && limit.falls->value == bracket.met;
+  std::string ends = falls_at_once ? " and " + from("falls", beyond) : ", " + from("moves", beyond);
+  if (!falls_at_once && limit.falls) ends += " and " + from("falls", *limit.falls);
+  if (!limit.falls) ends += fmt::format(", and falls at no value up to {}", words.end(result.request.to));
+  return fmt::format("{} is {}{}: the rock holds to {}{}.", capital(subject_of(result.request.key)),
+                     words.middle(), pga_text(limit), words.end(bracket.not_met), ends);
+}
+
 std::string found_text(const LimitResult& result, const RealizationLimit& limit) {
   const Bisection::Bracket bracket{limit.state.not_met, limit.state.met};
   const Limit words{result, bracket};
+  if (result.request.criterion.has_two_ends()) return both_ends_text(result, limit);
   const auto at = [&](double value) {
     const LimitTrial* trial = limit.trial_at(value);
     return trial == nullptr ? std::string()
@@ -235,7 +256,7 @@ std::string quantity(double value, const std::string& unit, int digits) {
 
 std::string outcome_text(const LimitRequest& request, const LimitTrial& trial) {
   const LimitCriterion& criterion = request.criterion;
-  if (criterion.collapse) {
+  if (criterion.by_standing) {
     const bool has_moved = trial.standing == Standing::stands && trial.measure > told_way;
     return movers_text(trial) + (has_moved ? fmt::format(", moved by up to {:.2g} m", trial.measure) : "");
   }
@@ -296,7 +317,7 @@ std::string not_met_hint(const LimitResult& result) {
       has_two_ways(result.request.key)
           ? fmt::format(", or give it the other sign: {} acts to the other side then", result.request.key)
           : "";
-  if (result.request.criterion.collapse)
+  if (result.request.criterion.by_standing)
     return "move --to farther" + other_way + "; --scan N looks between the ends";
   return "move --to farther" + other_way +
          ", lower --above, let the last stage last longer, or ask --until collapsed";

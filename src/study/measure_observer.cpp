@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/index.h"
 #include "record/standing.h"
@@ -60,6 +61,13 @@ std::vector<int> blocks_of_cells(const MapGrid& grid, const simulation::ModelRec
 void MeasureObserver::begin(const simulation::ModelRecord& model) {
   model_ = model;
   result_.blocks = static_cast<int>(blocks_);
+  double area = 0.0, moving = 0.0;
+  for (const auto& block : std::span(model.blocks).first(std::min(blocks_, model.blocks.size()))) {
+    if (block.fixed) continue;
+    area += block.area;
+    ++moving;
+  }
+  result_.block_size = moving > 0.0 ? std::sqrt(area / moving) : 0.0;
   fell_.assign(blocks_, -1);
 }
 
@@ -67,7 +75,23 @@ std::string MeasureObserver::name_of(int block) const {
   return block < 0 ? std::string() : model_.blocks[at(block)].name;
 }
 
+void MeasureObserver::stage_begin(int /*index*/, const simulation::StageRecord& stage) {
+  mechanism_ = {};
+  stage_begins_ = stage.stage.kind == simulation::StageKind::settle;
+}
+
+void MeasureObserver::frame(const simulation::Frame& frame) {
+  last_ = frame;
+  if (stage_begins_) mechanism_.start = frame;
+  stage_begins_ = false;
+}
+
+void MeasureObserver::contacts(const simulation::ContactFrame& frame) {
+  if (mechanism_.is_known()) mechanism_.contacts = frame.contacts;
+}
+
 void MeasureObserver::stage_end(int index, const simulation::StageRecord& stage) {
+  if (stage.moving.empty()) mechanism_ = {};
   if (stage.interrupted) return;
   result_.stages.push_back({stage.stage.name, stage.stage.kind, stage.pga, stage.pgv, stage.arias,
                             stage.damage,

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "record/record.h"
+#include "study/outputs.h"
 #include "study/run_result.h"
 
 namespace keyblock::study {
@@ -16,12 +17,16 @@ class MeasureObserver : public simulation::RunObserver {
       : result_(result), grid_(grid), blocks_(blocks), loosened_(loosened) {}
 
   void begin(const simulation::ModelRecord& model) override;
-  void frame(const simulation::Frame& frame) override { last_ = frame; }
+  void stage_begin(int index, const simulation::StageRecord& stage) override;
+  void frame(const simulation::Frame& frame) override;
+  void contacts(const simulation::ContactFrame& frame) override;
   void stage_end(int index, const simulation::StageRecord& stage) override;
   void end(const simulation::RunRecord& run) override;
 
   [[nodiscard]] const simulation::ModelRecord& model() const { return model_; }
   [[nodiscard]] const simulation::Frame& last_frame() const { return last_; }
+  /// Of the last stage, where it is static and blocks move in it; else not known.
+  [[nodiscard]] const Mechanism& mechanism() const { return mechanism_; }
 
  private:
   [[nodiscard]] std::string name_of(int block) const;
@@ -32,6 +37,8 @@ class MeasureObserver : public simulation::RunObserver {
   double loosened_;
   simulation::ModelRecord model_;
   simulation::Frame last_;
+  Mechanism mechanism_;
+  bool stage_begins_ = false;
   std::vector<int> fell_;                        ///< stage of every block; −1: has not fallen
   std::vector<simulation::FallenBlock> fallen_;  ///< at the end of the last stage
 };

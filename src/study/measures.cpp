@@ -68,6 +68,9 @@ std::optional<simulation::Damage> damage_between(const RunResult& run, std::stri
   for (const auto& field : simulation::damage_counts) damage.*field.number -= start->damage.*field.number;
   for (const auto& field : simulation::damage_fields)
     damage.*field.number = difference(damage.*field.number, start->damage.*field.number);
+  // Of the stage and its end alone.
+  damage.stage_displacement = end->damage.stage_displacement;
+  damage.moving_area = end->damage.moving_area;
   // What fell between: the difference of two extremes would be of no block.
   std::vector<simulation::FallenBlock> fallen;
   for (const FallenBlock& f : run.fallen) {

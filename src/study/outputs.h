@@ -12,7 +12,17 @@ namespace keyblock::study {
 /// Returns what it has gathered of the runs.
 Summary write_outputs(const std::filesystem::path& directory, const StudyData& study);
 
-/// The surroundings of the openings at one moment of a run, as a small SVG of its own: blocks filled by their status.
-std::string thumbnail_svg(const simulation::ModelRecord& model, const simulation::Frame& frame);
+/// How rock moves in a stage: from where, and which joints slip.
+struct Mechanism {
+  simulation::Frame start;  ///< as the stage began
+  std::vector<simulation::ContactRecord> contacts;
+
+  [[nodiscard]] bool is_known() const { return !start.displacement.empty(); }
+};
+
+/// The surroundings of the openings at one moment of a run, as a small SVG of its own: blocks filled by their status. Of a mechanism also arrows
+/// along which blocks move that are loosened or fallen, the longest for the farthest, and joints beside them that slip.
+std::string thumbnail_svg(const simulation::ModelRecord& model, const simulation::Frame& frame,
+                          const Mechanism& mechanism = {});
 
 }  // namespace keyblock::study

@@ -17,7 +17,7 @@ using results::number;
 using simulation::BlockStatus;
 using simulation::StageKind;
 
-constexpr int run_format = 4;
+constexpr int run_format = 5;
 constexpr std::uint64_t largest_map = 4'000'000;  // cells
 const std::string expected_words = "the measures of a run as keyblock wrote them";
 const std::string checksum_mark = ",\"checksum\":\"";
@@ -78,6 +78,7 @@ RunResult read_result(const ordered_json& json) {
   json.at("variant").get_to(run.variant);
   json.at("error").get_to(run.error);
   json.at("blocks").get_to(run.blocks);
+  run.block_size = number(json.at("block_size_m"));
   json.at("steps").get_to(run.steps);
   run.wall_time = number(json.at("wall_time_s"));
   json.at("state_hash").get_to(run.state_hash);
@@ -125,6 +126,7 @@ std::string run_json(const RunResult& run, const std::string& input) {
                           {"variant", run.variant},
                           {"error", run.error},
                           {"blocks", run.blocks},
+                          {"block_size_m", run.block_size},
                           {"steps", run.steps},
                           {"wall_time_s", run.wall_time},
                           {"state_hash", run.state_hash},

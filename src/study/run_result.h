@@ -51,6 +51,7 @@ struct RunResult {
   std::string
       error;  ///< why it failed; empty when it is done. The rest below is then that of the stages that ended
   int blocks = 0;
+  double block_size = 0.0;  ///< m, √ of the mean area of blocks that are not fixed
   long steps = 0;
   double wall_time = 0.0;  ///< s
   std::string state_hash;

@@ -88,7 +88,8 @@ class Task {
       report::write_report(memory->data(), folder_);
       if (!writer) results::write_summary(folder_, measures.model(), record);
     }
-    write_file_atomically(folder_ / "thumbnail.svg", thumbnail_svg(measures.model(), measures.last_frame()));
+    write_file_atomically(folder_ / "thumbnail.svg",
+                          thumbnail_svg(measures.model(), measures.last_frame(), measures.mechanism()));
     simulation::check_computation(record);
     write_file_atomically(folder_ / "run.json", run_json(result_, run_input(plan_)));
     return TaskOutcome::done;

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "core/index.h"
 #include "study/outputs.h"
@@ -25,9 +27,18 @@ constexpr double edge = 0.02;
 
 constexpr std::string_view style =
     "<style>.r{fill:#e4e1d8;stroke:#6b6f73}.x{fill:#d3d5d7;stroke:#6b6f73}.l{fill:#e69f00;stroke:#33373b}"
-    ".f{fill:#d55e00;stroke:#33373b}.o{fill:none;stroke:#c2185b}"
+    ".f{fill:#d55e00;stroke:#33373b}.o{fill:none;stroke:#c2185b}.s{fill:none;stroke:#0072b2}"
+    ".d{fill:none;stroke:#16181b}"
     "@media (prefers-color-scheme:dark){.r{fill:#4a4d50;stroke:#16181b}.x{fill:#33373b;stroke:#16181b}"
-    ".l,.f{stroke:#0d0e10}.o{stroke:#ff6fa8}}</style>";
+    ".l,.f{stroke:#0d0e10}.o{stroke:#ff6fa8}.s{stroke:#56b4e9}"
+    ".d{stroke:#f6f5f2}}</style>";
+
+/// Of the window, how long the longest arrow is; a head, of its arrow.
+constexpr double longest_arrow = 0.06, head_share = 0.35;
+/// Of the longest way, below which there is no arrow.
+constexpr double least_way = 0.05;
+/// Blocks that are drawn an arrow, the heaviest first, and joints that are drawn: more are not told apart.
+constexpr std::size_t most_arrows = 150, most_slips = 400;
 
 enum class Class { rock, fixed, loosened, fallen };
 constexpr std::array<char, 4> class_names{'r', 'x', 'l', 'f'};
@@ -39,8 +50,8 @@ struct Unit {
 
 class Drawing {
  public:
-  Drawing(const simulation::ModelRecord& model, const simulation::Frame& frame)
-      : model_(model), frame_(frame) {
+  Drawing(const simulation::ModelRecord& model, const simulation::Frame& frame, const Mechanism& mechanism)
+      : model_(model), frame_(frame), mechanism_(mechanism) {
     for (const auto& outline : model.excavation_outlines)
       for (const Vec2 p : outline) window_.add(p);
     Box rock;
@@ -90,10 +101,75 @@ class Drawing {
             resolution / 200.0, resolution / 66.0, resolution / 100.0, path);
       }
     }
+    if (mechanism_.is_known()) svg += slips(scale, resolution) + arrows(scale, resolution);
     return svg + "</svg>\n";
   }
 
  private:
+  [[nodiscard]] bool goes(std::size_t block) const {
+    const auto what = class_of(block);
+    return what == Class::loosened || what == Class::fallen;
+  }
+
+  /// m, of the display vertices of a block, in the mean: where they are, and how far they went in the stage.
+  struct Way {
+    Vec2 middle, way;
+    double area = 0.0;
+  };
+  [[nodiscard]] Way way_of(std::size_t block) const {
+    const auto& starts = model_.blocks[block].ring_start;
+    Way all{{}, {}, model_.blocks[block].area};
+    const double share = 1.0 / std::max(1, starts[1] - starts[0]);
+    for (int v = starts[0]; v < starts[1]; ++v) {
+      all.middle += share * position(v);
+      const auto &now = frame_.displacement[at(v)], &before = mechanism_.start.displacement[at(v)];
+      all.way += share * Vec2{now[0] - before[0], now[1] - before[1]};
+    }
+    return all;
+  }
+
+  [[nodiscard]] std::string arrows(double scale, int resolution) const {
+    std::vector<Way> ways;
+    double farthest = 0.0;
+    for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+      if (!goes(b)) continue;
+      ways.push_back(way_of(b));
+      farthest = std::max(farthest, norm(ways.back().way));
+    }
+    std::ranges::sort(ways, std::greater<>{}, &Way::area);
+    if (ways.size() > most_arrows) ways.resize(most_arrows);
+    std::string path;
+    for (const Way& of : ways) {
+      if (!(norm(of.way) > least_way * farthest)) continue;
+      const Vec2 along = longest_arrow * resolution / scale / farthest * of.way,
+                 side = head_share * Vec2{-along.y, along.x};
+      const Vec2 tip = of.middle + 0.5 * along, neck = tip - head_share * along;
+      const Unit a = unit(of.middle - 0.5 * along, scale), b = unit(tip, scale),
+                 l = unit(neck + 0.5 * side, scale), r = unit(neck - 0.5 * side, scale);
+      path += fmt::format("M{} {}L{} {}M{} {}L{} {}L{} {}", a.x, a.y, b.x, b.y, l.x, l.y, b.x, b.y, r.x, r.y);
+    }
+    return path.empty() ? path
+                        : fmt::format("<path class=\"d\" stroke-width=\"{:.2g}\" d=\"{}\"/>",
+                                      resolution / 250.0, path);
+  }
+
+  /// Joints of blocks that move, where they slip.
+  [[nodiscard]] std::string slips(double scale, int resolution) const {
+    std::string path;
+    std::size_t count = 0;
+    for (const simulation::ContactRecord& c : mechanism_.contacts) {
+      if (c.state != simulation::ContactState::sliding || !(goes(at(c.block_a)) || goes(at(c.block_b))))
+        continue;
+      if (count++ == most_slips) break;
+      const Vec2 half = 0.5 * c.length * Vec2{-c.normal.y, c.normal.x};
+      const Unit a = unit(c.position - half, scale), b = unit(c.position + half, scale);
+      path += fmt::format("M{} {}L{} {}", a.x, a.y, b.x, b.y);
+    }
+    return path.empty() ? path
+                        : fmt::format("<path class=\"s\" stroke-width=\"{:.2g}\" d=\"{}\"/>",
+                                      resolution / 140.0, path);
+  }
+
   /// The openings, and what is around them. What lies in front of a slope is open to the edge of the rock: beyond it there is nothing to show.
   void show_around_openings(Box rock) {
     const Vec2 size = window_.size();
@@ -178,13 +254,15 @@ class Drawing {
 
   const simulation::ModelRecord& model_;
   const simulation::Frame& frame_;
+  const Mechanism& mechanism_;
   Box window_;
 };
 
 }  // namespace
 
-std::string thumbnail_svg(const simulation::ModelRecord& model, const simulation::Frame& frame) {
-  const Drawing drawing(model, frame);
+std::string thumbnail_svg(const simulation::ModelRecord& model, const simulation::Frame& frame,
+                          const Mechanism& mechanism) {
+  const Drawing drawing(model, frame, mechanism);
   std::string svg;
   for (const int resolution : resolutions) {
     svg = drawing.draw(resolution);

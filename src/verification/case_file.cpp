@@ -20,7 +20,8 @@ using scenario::Rule;
 using scenario::TableReader;
 using scenario::Value;
 
-constexpr scenario::Word<RunCommand> commands[] = {{"run", RunCommand::run}, {"cut", RunCommand::cut}};
+constexpr scenario::Word<RunCommand> commands[] = {
+    {"run", RunCommand::run}, {"cut", RunCommand::cut}, {"census", RunCommand::census}};
 
 // More simulations in one run are a slip of the pen.
 constexpr std::size_t most_simulations = 100000;
@@ -227,8 +228,9 @@ void read_run(TableReader& t, RunSpec& run) {
   read_orders(t, run.orders, simulated());
   read_vary(t, run, simulated());
   read_points(t, run, simulated());
-  const bool cut = run.command == RunCommand::cut;
-  t.integer("realizations", run.realizations, only(!builtin && cut, "command = \"cut\"", {.at_least = 2.0}));
+  const bool cut = run.command != RunCommand::run;
+  t.integer("realizations", run.realizations,
+            only(!builtin && cut, "command = \"cut\" or \"census\"", {.at_least = 2.0}));
   int steps = 0;
   t.integer("resume_after", steps, only(!builtin && !cut, "command = \"run\"", {.at_least = 1.0}));
   run.resume_after = steps;

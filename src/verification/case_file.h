@@ -32,7 +32,7 @@ struct QuantitySpec {
   std::string source;
 };
 
-enum class RunCommand { run, cut };
+enum class RunCommand { run, cut, census };
 
 /// A set of overrides that is one simulation: key and value as TOML.
 using Parameters = std::vector<std::pair<std::string, std::string>>;
@@ -53,7 +53,7 @@ struct RunSpec {
   std::vector<int> orders;       ///< empty: the order of the scenario
   std::vector<std::pair<std::string, std::vector<std::string>>> vary;
   std::vector<Point> points;
-  int realizations = 0;  ///< of the rock mass, command cut; 0: the first alone
+  int realizations = 0;  ///< of the rock mass, commands cut and census; 0: the first alone
   long resume_after =
       0;  ///< steps after which the run is interrupted, and gone on with from its checkpoint; 0: never
   std::vector<QuantitySpec> quantities;

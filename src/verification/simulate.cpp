@@ -16,6 +16,7 @@
 #include "results/summary.h"
 #include "scenario/build.h"
 #include "scenario/cut_summary.h"
+#include "scenario/key_blocks.h"
 #include "scenario/key_path.h"
 #include "scenario/parse.h"
 #include "simulation/run.h"
@@ -153,7 +154,14 @@ void cut_realizations(const RunSpec& run, const scenario::Scenario& scenario, co
   for (int realization = 0; realization < count; ++realization) {
     Numbers numbers;
     const scenario::BlockModel model = scenario::build_blocks(scenario, realization);
-    flatten(nlohmann::json::parse(scenario::cut_summary(scenario, realization, model, version)), "", numbers);
+    if (run.command == RunCommand::census) {
+      constexpr double factor = scenario::usual_wanted_factor;
+      const census::Census census = scenario::take_census(scenario, model, factor);
+      flatten(scenario::census_json(scenario, realization, model, census, factor), "", numbers);
+    } else {
+      flatten(nlohmann::json::parse(scenario::cut_summary(scenario, realization, model, version)), "",
+              numbers);
+    }
     for (const auto& [path, number] : numbers) samples[path].push_back(number);
   }
   for (const auto& [path, sample] : samples) {
@@ -235,7 +243,7 @@ Outcome simulate(const RunSpec& run, const Simulation& simulation, const std::st
       const scenario::Scenario scenario = scenario::parse_scenario(run.scenario, simulation.overrides);
       outcome.order = scenario.rock.order;
       if (outcome.order == scenario::automatic_order) outcome.order.reset();
-      if (run.command == RunCommand::cut) {
+      if (run.command != RunCommand::run) {
         cut_realizations(run, scenario, version, outcome);
       } else {
         simulation::RunSetup setup = scenario::build_setup(scenario, 0);

@@ -150,7 +150,7 @@ class DefaultCriterion(Limit):
     def test_the_page_on_slopes_says_what_the_program_says(self):
         self.keyblock("new", "slope", "--force")
         page = (ROOT / "docs/slopes.md").read_text()
-        blocks = re.findall(r"```sh\nkeyblock (limit slope\.toml [^\n]*)\n```\n```\n(.*?)\n```", page, re.DOTALL)
+        blocks = re.findall(r"```sh\nkeyblock ((?:limit|safety) slope\.toml [^\n]*)\n```\n```\n(.*?)\n```", page, re.DOTALL)
         self.assertEqual(len(blocks), 3)
         for words, printed in blocks:
             said = self.keyblock(*words.split()).stdout

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <stdexcept>
 
@@ -34,6 +35,24 @@ TEST(Api, ScenariosAreReadSetAndWritten) {
   EXPECT_THROW(scenario.set("stage.rise.duration", "1"), InputError);
   scenario.set("rock.young", "soft");
   EXPECT_THROW((void)scenario.check(), InputError);
+}
+
+TEST(Api, KeyBlocksAreThoseOfTheScenario) {
+  Scenario scenario = Scenario::parse(falling, "drop.toml");
+  scenario.set("block.stone.outer", "[[0.5, 0.0], [1.5, 0.0], [1.5, 1.0], [0.5, 1.0]]");
+  scenario.set("gravity", "[4.0, -4.0]");  // 45°: steeper than the friction angle
+  const Census census = scenario.census(0, 2.0);
+  ASSERT_EQ(census.blocks.size(), 1U);
+  const KeyBlock& stone = census.blocks.front();
+  EXPECT_EQ(stone.name, "stone");
+  EXPECT_EQ(stone.mode, "slides");
+  EXPECT_EQ(stone.layer, 1);
+  EXPECT_EQ(stone.joints, std::vector<std::string>{"[joints]"});
+  EXPECT_NEAR(stone.factor_of_safety, 1.0 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(stone.force, 2500.0 * 4.0 * (1.0 - 0.5 / std::sqrt(3.0)), 1e-8);
+  EXPECT_NEAR(stone.direction[0], 1.0, 1e-12);
+  EXPECT_THROW((void)scenario.census(-1), InputError);
+  EXPECT_THROW((void)scenario.census(0, 0.9), InputError);
 }
 
 TEST(Api, ListsGrowAndCopiesStayAsTheyWere) {

@@ -197,10 +197,29 @@ TEST(LimitCriterion, RefusesWhatItDoesNotKnow) {
     }
     return "";
   };
-  EXPECT_THAT(message("falen", {}),
-              HasSubstr("--until: found \"falen\"; expected fallen, moved, collapsed or a measure"));
+  EXPECT_THAT(
+      message("falen", {}),
+      HasSubstr("--until: found \"falen\"; expected fallen, moved, collapsed, gives_way or a measure"));
   EXPECT_THAT(message("falen", {}), HasSubstr("did you mean 'fallen'?"));
   EXPECT_THAT(message("collapsed", 1.0), HasSubstr("--above: found 1"));
+}
+
+// What moves has given way, before it falls: by a share of the block size, or by a length.
+TEST(LimitCriterion, GivesWay) {
+  RunResult run = run_with(0.0, 0.0, Standing::stands);
+  run.block_size = 2.0;
+  const auto met = [&](double moved, Standing standing, std::optional<double> above) {
+    run.stages.back().damage.stage_displacement = moved;
+    run.stages.back().standing = standing;
+    return limit_trial(request_of(limit_criterion("gives_way", above, 0.01)), 1.0, run).met;
+  };
+  EXPECT_FALSE(met(0.0039, Standing::stands, {}));
+  EXPECT_TRUE(met(0.0041, Standing::stands, {}));
+  EXPECT_FALSE(met(0.0041, Standing::stands, 0.01));
+  EXPECT_FALSE(met(0.0039, Standing::rocks, {}));
+  for (const Standing standing :
+       {Standing::collapsed, Standing::moves, Standing::unsettled, Standing::unstable})
+    EXPECT_TRUE(met(0.0, standing, {}));
 }
 
 // What gravity brought down by the end of a stage does not count from there on.

@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "core/text.h"
+#include "limit_arguments.h"
+#include "scenario/value.h"
+
+namespace keyblock::app {
+namespace {
+
+/// Keys of [safety] that the command line gives.
+struct SafetyArguments {
+  LimitArguments limit;
+  std::string stage;
+  std::vector<std::string> sets;
+  std::optional<double> area, moved;
+};
+
+std::string quoted(const std::string& text) {
+  scenario::Value value;
+  value.type = scenario::Value::Type::string;
+  value.text = text;
+  return scenario::to_toml(value);
+}
+
+void run_safety(const SafetyArguments& arguments) {
+  LimitArguments limit = arguments.limit;
+  std::vector<std::string>& overrides = limit.scenario.overrides;
+  if (!arguments.stage.empty()) overrides.push_back("safety.stage=" + quoted(arguments.stage));
+  std::string sets;
+  for (const std::string& name : arguments.sets) sets += (sets.empty() ? "" : ", ") + quoted(name);
+  if (!sets.empty()) overrides.push_back("safety.sets=[" + sets + "]");
+  if (arguments.area) overrides.push_back(fmt::format("safety.area={}", *arguments.area));
+  if (arguments.moved) overrides.push_back(fmt::format("safety.moved={}", *arguments.moved));
+  run_limit(std::move(limit));
+}
+
+}  // namespace
+
+void add_safety(CLI::App& app) {
+  auto arguments = std::make_shared<SafetyArguments>();
+  study::LimitRequest& request = arguments->limit.request;
+  request.key = study::safety_key;
+  request.from = 0.5;
+  request.to = 5.0;
+  request.tolerance = 0.005;
+  CLI::App* command = app.add_subcommand("safety",
+                                         "Factor of safety: what strength of joints may be divided by, from "
+                                         "an equilibrium on, until rock moves and "
+                                         "falls");
+  add_scenario_file(*command, arguments->limit.scenario);
+  command
+      ->add_option(
+          "--stage", arguments->stage,
+          "Stage at whose end strength is reduced; default: stage of [safety], or the last static one")
+      ->type_name("STAGE");
+  command
+      ->add_option("--sets", arguments->sets,
+                   "Joint sets, trace maps, or joints, whose strength is reduced; default: all")
+      ->delimiter(',')
+      ->type_name("NAME,…");
+  command->add_option("--area", arguments->area, "So much rock may move, m2; default: none")->type_name("A");
+  command
+      ->add_option("--moved", arguments->moved,
+                   "Rock has moved that went farther than this, m; default: 0.2 % of the block size")
+      ->type_name("X");
+  command->add_option("--from", request.from, "A factor at which the rock holds")
+      ->capture_default_str()
+      ->type_name("A");
+  command->add_option("--to", request.to, "A factor at which it does not")
+      ->capture_default_str()
+      ->type_name("B");
+  command
+      ->add_option("--tolerance", request.tolerance,
+                   "Where the bisection ends: width of the bracket over the larger of its ends")
+      ->capture_default_str()
+      ->type_name("T");
+  command
+      ->add_option("--sweep", request.scan,
+                   "Also look at N equal parts of the way: what moves at which factor, and whether the rock "
+                   "holds again")
+      ->check(CLI::Range(1, 1000).description(""))
+      ->type_name("N");
+  add_limit_realizations(*command, request);
+  add_limit_folder(*command, arguments->limit);
+  command->add_flag(
+      "--resume", arguments->limit.resume,
+      "Go on with the runs in DIR; --from, --to, --tolerance, --sweep and --realizations may change");
+  command->footer(
+      "keyblock limit over safety.strength_factor: every trial ends with a static stage in which "
+      "tan(friction), "
+      "cohesion and tension are divided by the factor. The answer tells up to where the rock holds, from "
+      "where on it "
+      "moves, and from where on it falls.\n\n"
+      "Examples:\n"
+      "  keyblock safety slope.toml -o out/safety\n"
+      "  keyblock safety slope.toml --sets bedding --realizations 40 -o out/bedding\n"
+      "  keyblock safety tunnel.toml --stage excavated --area 0.5 --sweep 8 -o out/tunnel");
+  command->callback([arguments] { run_safety(*arguments); });
+}
+
+}  // namespace keyblock::app

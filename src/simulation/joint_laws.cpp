@@ -1,0 +1,96 @@
+#include "simulation/joint_laws.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <string>
+
+namespace keyblock::simulation {
+namespace {
+
+constexpr std::size_t of_joints = 0, of_frame = 1, of_outlines = 2, first_set = 3;
+
+double coefficient_of(double friction_angle) {
+  return std::tan(friction_angle * std::numbers::pi / 180.0);
+}
+
+contact::JointLaw law_of(const JointProperties& joint) {
+  contact::JointLaw law{.friction_coefficient = coefficient_of(joint.friction),
+                        .cohesion = joint.cohesion,
+                        .tension = joint.tension,
+                        .normal_stiffness = joint.normal_stiffness.value_or(0.0),
+                        .stiffness_ratio = joint.stiffness_ratio};
+  if (joint.residual)
+    law.residual = contact::JointLaw::Residual{coefficient_of(joint.residual->friction),
+                                               joint.residual->cohesion, joint.residual->slip};
+  return law;
+}
+
+}  // namespace
+
+int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
+  const int sets = static_cast<int>(setup.joints.joint_sets.size());
+  const int maps = static_cast<int>(setup.joints.trace_maps.size());
+  switch (label.kind) {
+    case cutting::EdgeKind::free:
+    case cutting::EdgeKind::domain:
+      return static_cast<int>(of_joints);  // the law of the frame is that of the frame's own edges
+    case cutting::EdgeKind::excavation:
+      return static_cast<int>(of_outlines);
+    case cutting::EdgeKind::joint_set:
+      return static_cast<int>(first_set) + label.index;
+    case cutting::EdgeKind::trace_map:
+      return static_cast<int>(first_set) + sets + std::min<int>(label.index, maps - 1);
+  }
+  return static_cast<int>(of_joints);
+}
+
+std::optional<std::size_t> find_law(const RunSetup& setup, std::string_view name) {
+  if (name == "joints") return of_joints;
+  if (name == "frame") return of_frame;
+  std::size_t number = first_set;
+  for (const auto* names : {&setup.joint_set_names, &setup.trace_map_names}) {
+    const auto found = std::ranges::find(*names, name);
+    if (found != names->end()) return number + static_cast<std::size_t>(found - names->begin());
+    number += names->size();
+  }
+  return std::nullopt;
+}
+
+std::vector<contact::JointLaw> joint_laws(const RunSetup& setup) {
+  std::vector<contact::JointLaw> laws{law_of(setup.joints.standard), law_of(setup.joints.frame),
+                                      law_of(setup.joints.standard)};
+  laws[of_outlines].fused = true;
+  std::ranges::transform(setup.joints.joint_sets, std::back_inserter(laws), law_of);
+  std::ranges::transform(setup.joints.trace_maps, std::back_inserter(laws), law_of);
+  return laws;
+}
+
+void put_strength(const Strength& strength, contact::JointLaw& law) {
+  law.friction_coefficient = strength.friction_coefficient;
+  law.cohesion = strength.cohesion;
+  law.tension = strength.tension;
+  if (!law.residual) return;
+  law.residual->friction_coefficient = std::min(law.residual->friction_coefficient, law.friction_coefficient);
+  law.residual->cohesion = std::min(law.residual->cohesion, law.cohesion);
+}
+
+std::vector<contact::JointLaw> given_laws(const RunSetup& setup, const ControlMemory& memory) {
+  std::vector<contact::JointLaw> laws = joint_laws(setup);
+  for (std::size_t k = 0; k < memory.strengths.size(); ++k) put_strength(memory.strengths[k], laws[k]);
+  return laws;
+}
+
+std::vector<contact::JointLaw> laws_in_stage(const RunSetup& setup, const ControlMemory& memory,
+                                             const Stage& stage) {
+  std::vector<contact::JointLaw> laws = given_laws(setup, memory);
+  const auto reduce = [&](std::size_t law) { laws[law] = laws[law].divided_by(stage.strength_factor); };
+  for (const std::string& name : stage.strength_of) reduce(find_law(setup, name).value());
+  if (!stage.strength_of.empty()) return laws;
+  for (std::size_t law = 0; law < laws.size(); ++law)
+    if (law != of_frame && law != of_outlines) reduce(law);
+  return laws;
+}
+
+}  // namespace keyblock::simulation

@@ -1,0 +1,32 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "contact/joint_law.h"
+#include "cutting/block_system.h"
+#include "simulation/control.h"
+#include "simulation/setup.h"
+
+/// Which law a joint has. Their numbers: 0 `joints`, 1 the frame, 2 outlines of excavations before they are opened, then joint sets, then trace
+/// maps.
+namespace keyblock::simulation {
+
+/// Number of the law of an edge (Surface::joint).
+int joint_law(const RunSetup& setup, cutting::EdgeLabel label);
+/// Number of the law of a joint set, a trace map, `joints` or `frame`; none: there is no such name.
+std::optional<std::size_t> find_law(const RunSetup& setup, std::string_view name);
+
+/// All laws, as the setup has them.
+std::vector<contact::JointLaw> joint_laws(const RunSetup& setup);
+/// With what a program that steers the run has changed.
+std::vector<contact::JointLaw> given_laws(const RunSetup& setup, const ControlMemory& memory);
+/// As they act in a stage: divided by its factor.
+std::vector<contact::JointLaw> laws_in_stage(const RunSetup& setup, const ControlMemory& memory,
+                                             const Stage& stage);
+
+/// Gives a law another strength at the peak; what is left at the end is no more.
+void put_strength(const Strength& strength, contact::JointLaw& law);
+
+}  // namespace keyblock::simulation
