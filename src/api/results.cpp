@@ -110,8 +110,8 @@ std::vector<StepEnergies> Results::energies() const {
   std::vector<StepEnergies> steps;
   for (const simulation::StepRow& row : parts_->data.steps) {
     StepEnergies& of = steps.emplace_back(StepEnergies{row.time, row.step, {}});
-    for (const auto& [name, member] : simulation::energy_fields)
-      of.energy.emplace_back(name, row.energy.*member);
+    for (const simulation::EnergyField& field : simulation::energy_fields)
+      of.energy.emplace_back(field.name, row.energy.*field.number);
   }
   return steps;
 }

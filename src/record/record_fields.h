@@ -1,7 +1,6 @@
 #pragma once
 #include <iterator>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "record/record.h"
@@ -9,19 +8,24 @@
 /// The members of records that are written in several places, once, with their names.
 namespace keyblock::simulation {
 
-inline constexpr std::pair<const char*, double Energy::*> energy_fields[] = {
-    {"kinetic", &Energy::kinetic},
-    {"strain", &Energy::strain},
-    {"gravity", &Energy::gravity},
-    {"contact", &Energy::contact},
-    {"friction", &Energy::friction},
-    {"damping", &Energy::damping},
-    {"input", &Energy::input},
-    {"numerical", &Energy::numerical},
-    {"residual_ratio", &Energy::residual_ratio},
-    // Results of earlier versions do not have these.
-    {"radiated", &Energy::radiated},
-    {"water", &Energy::water}};
+/// A term of the balance of energies, in the order of every table.
+struct EnergyField {
+  const char* name;
+  double Energy::*number;
+  const char* unit = "J/m";
+  bool is_late = false;  ///< results of earlier versions do not have it
+};
+inline constexpr EnergyField energy_fields[] = {{"kinetic", &Energy::kinetic},
+                                                {"strain", &Energy::strain},
+                                                {"gravity", &Energy::gravity},
+                                                {"contact", &Energy::contact},
+                                                {"friction", &Energy::friction},
+                                                {"damping", &Energy::damping},
+                                                {"input", &Energy::input},
+                                                {"numerical", &Energy::numerical},
+                                                {"residual_ratio", &Energy::residual_ratio, "1"},
+                                                {"radiated", &Energy::radiated, "J/m", true},
+                                                {"water", &Energy::water, "J/m", true}};
 static_assert(sizeof(Energy) == std::size(energy_fields) * sizeof(double), "a term of the energy is missing");
 
 /// Quantities of a history point with their units, in the order of every table.
@@ -38,6 +42,13 @@ inline constexpr HistoryField history_fields[] = {
     {"ay", "m/s2", &HistoryRow::Point::ay}};  // results of earlier versions have no ax, ay
 static_assert(sizeof(HistoryRow::Point) == std::size(history_fields) * sizeof(double),
               "a quantity of histories is missing");
+
+/// Names of energy_fields.
+inline std::vector<std::string> energy_names() {
+  std::vector<std::string> names;
+  for (const EnergyField& field : energy_fields) names.emplace_back(field.name);
+  return names;
+}
 
 /// Names of history_fields.
 inline std::vector<std::string> history_quantities() {

@@ -1,21 +1,15 @@
 #pragma once
 #include "record/record.h"
+#include "record/record_file.h"
 
 /// The record of a stage, each field described once: checkpoints, result.h5, summary.json, the report and Python have them from here.
 namespace keyblock::simulation {
-
-/// How far a field goes: each of these has the fields of the ones before it.
-enum class StageFile : unsigned char {
-  summary,  ///< summary.json
-  page,     ///< the report
-  result,   ///< a line of `stages` in result.h5, and checkpoints
-};
 
 struct StageField {
   const char* name;  ///< in files; "equilibrium.reached" is `reached` of the object `equilibrium`
   const char* unit;  ///< SI; empty: none
   const char* meaning;
-  StageFile file = StageFile::summary;
+  RecordFile file = RecordFile::summary;
   const char* earlier = nullptr;  ///< its name in result.h5 of earlier versions, where it had another
   bool is_late = false;           ///< result.h5 of version 0.1 does not have it
 };
@@ -23,7 +17,7 @@ struct StageField {
 /// Calls visit(field, value) for each field of a StageRecord, const or not.
 template <class Record, class Visit>
 void visit_stage(Record& r, const Visit& visit) {
-  using enum StageFile;
+  using enum RecordFile;
   const auto field = [&visit](const StageField& f, auto& value) { visit(f, value); };
   field({"name", "", "as in the scenario"}, r.stage.name);
   field({"kind", "", "settle, shake or rest"}, r.stage.kind);

@@ -20,7 +20,7 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json stage_json(const simulation::StageRecord& record) {
-  ordered_json json = results::stage_fields_json(record, simulation::StageFile::page);
+  ordered_json json = results::stage_fields_json(record, simulation::RecordFile::page);
   results::add_verdict(record, json["equilibrium"]);
   return json;
 }
@@ -84,22 +84,15 @@ ordered_json run_json(const results::RunData& data) {
   const simulation::RunRecord& run = data.run;
   ordered_json stages = ordered_json::array();
   for (const simulation::StageRecord& record : run.stages) stages.push_back(stage_json(record));
-  return {{"steps", run.steps},
-          {"wall_time_s", run.wall_time},
-          {"dof", run.dof},
-          {"state_hash", run.state_hash},
-          {"open_close", data.cut_off ? ordered_json() : results::open_close_json(run.open_close)},
-          {"max_overlap_m", run.max_overlap.depth},
-          {"max_overlap_at", results::overlap_place_json(run.max_overlap, data.model.origin)},
-          {"contact_checks", results::contact_checks_json(run.contact_checks, data.model.origin)},
-          {"errors", simulation::computation_errors(run)},
-          {"max_area_change", run.max_area_change},
-          {"made_ratio", run.made.ratio},
-          {"elements", results::elements_json(run.elements, data.model.origin)},
-          {"energy", results::energy_json(run.energy)},
-          {"stages", stages},
-          {"interrupted", run.interrupted},
-          {"cut_off", data.cut_off}};
+  ordered_json json = results::run_fields_json(run, simulation::RecordFile::page);
+  if (data.cut_off) json["open_close"] = nullptr;
+  json["max_overlap_at"] = results::overlap_place_json(run.max_overlap, data.model.origin);
+  json["contact_checks"] = results::contact_checks_json(run.contact_checks, data.model.origin);
+  json["errors"] = simulation::computation_errors(run);
+  json["elements"] = results::elements_json(run.elements, data.model.origin);
+  json["stages"] = stages;
+  json["cut_off"] = data.cut_off;
+  return json;
 }
 
 /// The smallest number of steps from one row of a stage to the next; 0 where there are no two rows.

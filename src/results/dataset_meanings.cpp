@@ -86,25 +86,11 @@ Names names_up_to(Enum last, std::string (*name)(Enum)) {
   return names;
 }
 
-Names energy_names() {
-  Names names;
-  for (const auto& [name, member] : simulation::energy_fields) names.emplace_back(name);
-  return names;
-}
-
-std::string history_units() {
+/// Units of columns, one for each, after commas.
+template <class Fields>
+std::string units_of(const Fields& fields) {
   std::string units;
-  for (const simulation::HistoryField& field : simulation::history_fields)
-    units += (units.empty() ? "" : ", ") + std::string(field.unit);
-  return units;
-}
-
-std::string energy_units() {
-  std::string units;
-  for (const auto& [name, member] : simulation::energy_fields) {
-    if (!units.empty()) units += ", ";
-    units += member == &simulation::Energy::residual_ratio ? "1" : "J/m";
-  }
+  for (const auto& field : fields) units += (units.empty() ? "" : ", ") + std::string(field.unit);
   return units;
 }
 
@@ -194,7 +180,7 @@ std::vector<Meaning> of_rows() {
       {"histories/names", "", "names of the chosen points"},
       {"histories/time", "s", "simulated time"},
       {"histories/step", "1", "step of the run"},
-      {"histories/values", history_units(),
+      {"histories/values", units_of(simulation::history_fields),
        "of every chosen point: displacement, velocity, stress, and acceleration as its mean over the last "
        "step",
        simulation::history_quantities()},
@@ -206,7 +192,8 @@ std::vector<Meaning> of_rows() {
       {"steps/step_size", "s", "smallest part of the step; static: pseudo time step"},
       {"steps/penetration", "m", "largest depth that the contact code sees"},
       {"steps/max_displacement", "m", "largest of the step"},
-      {"steps/energy", energy_units(), "terms of the energy balance per metre of thickness", energy_names()},
+      {"steps/energy", units_of(simulation::energy_fields),
+       "terms of the energy balance per metre of thickness", simulation::energy_names()},
       {"steps/energy_names", "", "names of the columns of energy"},
       {"stages", "", "a JSON object per line, bytes"},
       {"run", "", "a line of JSON at the end of the run, bytes"},
@@ -235,16 +222,12 @@ std::vector<Meaning> of_elements(const simulation::ModelRecord& model) {
 std::vector<Meaning> of_element_histories(const simulation::ModelRecord& model) {
   if (model.element_histories.empty()) return {};
   Names names;
-  std::string units;
-  for (const auto& field : simulation::element_history_fields) {
-    names.emplace_back(field.name);
-    units += (units.empty() ? "" : ", ") + std::string(field.unit);
-  }
+  for (const auto& field : simulation::element_history_fields) names.emplace_back(field.name);
   return {{"element_history", "1", "number of the history that follows an element"},
           {"element_quantity", "", "of these histories"},
           {"histories/element_names", "", "names of the histories that follow elements"},
-          {"histories/element_values", units, "of every such history; NaN where the element is not there",
-           names}};
+          {"histories/element_values", units_of(simulation::element_history_fields),
+           "of every such history; NaN where the element is not there", names}};
 }
 
 std::vector<Meaning> all_meanings(const simulation::ModelRecord& model) {

@@ -79,13 +79,15 @@ std::string contact_table(const RunData& data) {
 
 std::string step_table(const RunData& data) {
   std::string text = "time,stage,step,iterations,step_size,penetration,max_displacement,closed_contacts";
-  for (const auto& [name, member] : simulation::energy_fields) text += fmt::format(",{}", name);
+  for (const simulation::EnergyField& field : simulation::energy_fields)
+    text += fmt::format(",{}", field.name);
   text += "\n";
   auto out = std::back_inserter(text);
   for (const simulation::StepRow& r : data.steps) {
     fmt::format_to(out, "{},{},{},{},{},{},{},{}", r.time, r.stage, r.step, r.iterations, r.step_size,
                    r.penetration, r.max_displacement, r.closed_contacts);
-    for (const auto& [name, member] : simulation::energy_fields) fmt::format_to(out, ",{}", r.energy.*member);
+    for (const simulation::EnergyField& field : simulation::energy_fields)
+      fmt::format_to(out, ",{}", r.energy.*field.number);
     text += "\n";
   }
   return text;

@@ -168,16 +168,15 @@ simulation::Movers read_movers(const ordered_json& json) {
 
 ordered_json energy_json(const simulation::Energy& energy) {
   ordered_json json;
-  for (const auto& [name, member] : simulation::energy_fields) json[name] = energy.*member;
+  for (const simulation::EnergyField& field : simulation::energy_fields)
+    json[field.name] = energy.*field.number;
   return json;
 }
 
 simulation::Energy read_energy(const ordered_json& json) {
   simulation::Energy energy;
-  for (const auto& [name, member] : simulation::energy_fields) {
-    const bool is_newer = member == &simulation::Energy::radiated || member == &simulation::Energy::water;
-    if (!is_newer || json.contains(name)) energy.*member = number(json.at(name));
-  }
+  for (const simulation::EnergyField& field : simulation::energy_fields)
+    if (!field.is_late || json.contains(field.name)) energy.*field.number = number(json.at(field.name));
   return energy;
 }
 

@@ -7,6 +7,7 @@
 
 #include "geometry/vec2.h"
 #include "record/record.h"
+#include "record/record_file.h"
 
 /// Parts of records that several files write as JSON alike. Reading throws nlohmann::json::exception for what is missing
 /// or has another type.
@@ -35,6 +36,8 @@ nlohmann::ordered_json open_close_json(const simulation::OpenCloseStatistics& st
 nlohmann::ordered_json ground_json(const std::vector<std::pair<std::string, std::string>>& ground);
 /// Which blocks, where, and when; null where none overlap.
 nlohmann::ordered_json overlap_place_json(const simulation::OverlapRecord& overlap, Vec2 origin);
+/// Fields of a run as far as a file has them (record/run_fields.h).
+nlohmann::ordered_json run_fields_json(const simulation::RunRecord& run, simulation::RecordFile file);
 nlohmann::ordered_json points_json(const std::vector<Vec2>& points);  ///< [[x, y], …]
 
 simulation::Damage read_damage(const nlohmann::ordered_json& json);

@@ -99,7 +99,7 @@ void write_texts(hid_t file, const simulation::ModelRecord& model) {
     texts["element_kinds"].push_back(element.kind);
   }
   for (const auto& history : model.element_histories) texts["element_history_names"].push_back(history.name);
-  for (const auto& [name, member] : simulation::energy_fields) texts["energy_names"].push_back(name);
+  texts["energy_names"] = simulation::energy_names();
   texts["meanings"] = dataset_names(model);
   TextColumn column(file, "texts");
   column.append(texts.dump());
@@ -126,9 +126,7 @@ void write_scales(hid_t file, const simulation::ModelRecord& model) {
   named("component", {"x", "y"});
   named("stress_component", {"xx", "yy", "xy"});
   named("quantity", simulation::history_quantities());
-  std::vector<std::string> energies;
-  for (const auto& [name, member] : simulation::energy_fields) energies.emplace_back(name);
-  named("energy_term", energies);
+  named("energy_term", simulation::energy_names());
   if (!model.elements.empty()) named("end", {"from", "to"});
   if (!model.element_histories.empty()) {
     std::vector<std::string> quantities;

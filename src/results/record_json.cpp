@@ -6,7 +6,9 @@
 #include "core/checked_json.h"
 #include "core/error.h"
 #include "cutting/cut_fields.h"
+#include "record/run_fields.h"
 #include "results/elements_json.h"
+#include "results/field_json.h"
 #include "results/json_parts.h"
 #include "results/stage_json.h"
 
@@ -22,21 +24,6 @@ std::optional<double> optional_number(const ordered_json& value) {
 // Of a field that files of version 0.1 do not have.
 std::optional<double> later_number(const ordered_json& json, const char* name) {
   return json.contains(name) ? optional_number(json.at(name)) : std::nullopt;
-}
-
-void read(const ordered_json& json, double& value) {
-  value = number(json);
-}
-void read(const ordered_json& json, int& value) {
-  json.get_to(value);
-}
-
-void read_cutting(const ordered_json& json, cutting::CutStatistics& statistics) {
-  visit_cutting(statistics, [&](const cutting::CutField& field, auto& value) {
-    const ordered_json* found = find_field(json, field.name, field.earlier);
-    if (found == nullptr && field.is_late) return;
-    read(found == nullptr ? json.at(field.name) : *found, value);
-  });
 }
 
 template <class Parse>
@@ -101,7 +88,9 @@ void read_model_json(const std::string& text, simulation::ModelRecord& model) {
     model.opening_width = optional_number(json.at("opening_width"));
     model.slip_limit = later_number(json, "slip_limit");
     model.opening_limit = later_number(json, "opening_limit");
-    read_cutting(json.at("cutting"), model.cutting);
+    visit_cutting(model.cutting, [&](const cutting::CutField& field, auto& value) {
+      read_field(json.at("cutting"), field, value);
+    });
     // Files of earlier versions have none of these.
     if (json.contains("warnings")) json.at("warnings").get_to(model.warnings);
     if (json.contains("closure_is_lower_bound"))
@@ -114,7 +103,7 @@ void read_model_json(const std::string& text, simulation::ModelRecord& model) {
 
 std::string stage_json(int index, const simulation::StageRecord& stage, bool ended) {
   ordered_json json{{"index", index}, {"ended", ended}};
-  json.update(stage_fields_json(stage, simulation::StageFile::result));
+  json.update(stage_fields_json(stage, simulation::RecordFile::result));
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
@@ -128,43 +117,33 @@ StageLine read_stage_json(const std::string& text) {
   });
 }
 
+ordered_json run_fields_json(const simulation::RunRecord& run, simulation::RecordFile file) {
+  ordered_json json;
+  simulation::visit_run(run, [&](const simulation::RunField& field, const auto& value) {
+    if (field.file <= file) json[field.name] = json_of(value);
+  });
+  return json;
+}
+
 std::string run_json(const simulation::RunRecord& run) {
-  const ordered_json json{{"steps", run.steps},
-                          {"wall_time", run.wall_time},
-                          {"dof", run.dof},
-                          {"state_hash", run.state_hash},
-                          {"open_close", open_close_json(run.open_close)},
-                          {"max_overlap", run.max_overlap.depth},
-                          {"max_overlap_at", overlap_place_json(run.max_overlap, {})},
-                          {"contact_checks", contact_checks_json(run.contact_checks, {})},
-                          {"max_area_change", run.max_area_change},
-                          {"energy", energy_json(run.energy)},
-                          {"made_ratio", run.made.ratio},
-                          {"made_time", run.made.time},
-                          {"made_share", run.made.share()},
-                          {"planes", planes_json(run.planes, {})},
-                          {"elements", elements_json(run.elements, {})},
-                          {"water", run.water ? water_json(*run.water) : ordered_json()},
-                          {"interrupted", run.interrupted}};
+  ordered_json json = run_fields_json(run, simulation::RecordFile::result);
+  json["max_overlap_at"] = overlap_place_json(run.max_overlap, {});
+  json["contact_checks"] = contact_checks_json(run.contact_checks, {});
+  json["made_share"] = run.made.share();
+  json["planes"] = planes_json(run.planes, {});
+  json["elements"] = elements_json(run.elements, {});
+  json["water"] = run.water ? water_json(*run.water) : ordered_json();
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 simulation::RunRecord read_run_json(const std::string& text) {
   return parsed(text, [](const ordered_json& json) {
     simulation::RunRecord run;
-    json.at("steps").get_to(run.steps);
-    run.wall_time = number(json.at("wall_time"));
-    json.at("dof").get_to(run.dof);
-    json.at("state_hash").get_to(run.state_hash);
-    run.open_close = read_open_close(json.at("open_close"));
-    run.max_overlap.depth = number(json.at("max_overlap"));
-    // Files of earlier versions do not have it.
+    simulation::visit_run(
+        run, [&](const simulation::RunField& field, auto& value) { read_field(json, field, value); });
+    // Files of earlier versions do not have these.
     if (json.contains("max_overlap_at")) read_overlap_place(json.at("max_overlap_at"), run.max_overlap);
     if (json.contains("contact_checks")) run.contact_checks = read_contact_checks(json.at("contact_checks"));
-    run.max_area_change = number(json.at("max_area_change"));
-    run.energy = read_energy(json.at("energy"));
-    if (json.contains("made_ratio")) run.made.ratio = number(json.at("made_ratio"));
-    if (json.contains("made_time")) run.made.time = number(json.at("made_time"));
     if (json.contains("made_share")) {
       run.made.most = number(json.at("made_share"));
       run.made.largest = 1.0;
@@ -172,7 +151,6 @@ simulation::RunRecord read_run_json(const std::string& text) {
     if (json.contains("planes")) run.planes = read_planes(json.at("planes"));
     if (json.contains("elements")) run.elements = read_elements(json.at("elements"));
     if (json.contains("water") && !json.at("water").is_null()) run.water = read_water(json.at("water"));
-    json.at("interrupted").get_to(run.interrupted);
     return run;
   });
 }

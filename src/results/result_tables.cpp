@@ -125,14 +125,12 @@ StepTable::StepTable(hid_t file)
       max_displacement_(group_, "max_displacement", {}),
       energy_(group_, "energy", {energy_terms}),
       time_(group_, "time", {}) {
-  std::vector<std::string> names;
-  for (const auto& [name, member] : simulation::energy_fields) names.emplace_back(name);
-  hdf5::write_strings(group_, "energy_names", names);
+  hdf5::write_strings(group_, "energy_names", simulation::energy_names());
 }
 
 void StepTable::append(const simulation::StepRow& row) {
   std::array<double, energy_terms> energy{};
-  for (std::size_t k = 0; k < energy_terms; ++k) energy[k] = row.energy.*simulation::energy_fields[k].second;
+  for (std::size_t k = 0; k < energy_terms; ++k) energy[k] = row.energy.*simulation::energy_fields[k].number;
   stage_.append(row.stage);
   iterations_.append(row.iterations);
   closed_contacts_.append(row.closed_contacts);
@@ -178,7 +176,7 @@ std::vector<simulation::StepRow> StepTable::read(hid_t file) {
                closed_contacts.values[k],
                {}};
     for (std::size_t i = 0; i < terms; ++i) {
-      rows[k].energy.*simulation::energy_fields[i].second = energy.values[terms * k + i];
+      rows[k].energy.*simulation::energy_fields[i].number = energy.values[terms * k + i];
     }
   }
   return rows;

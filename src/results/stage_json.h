@@ -8,7 +8,7 @@
 namespace keyblock::results {
 
 /// All fields that a file has.
-nlohmann::ordered_json stage_fields_json(const simulation::StageRecord& stage, simulation::StageFile file);
+nlohmann::ordered_json stage_fields_json(const simulation::StageRecord& stage, simulation::RecordFile file);
 /// Of a line of `stages` in result.h5, of any version.
 void read_stage_fields(const nlohmann::ordered_json& json, simulation::StageRecord& stage);
 /// Adds what a static stage came to, in words, and what each moving block does, to the fields `equilibrium`.

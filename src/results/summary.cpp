@@ -65,7 +65,7 @@ ordered_json blocks_by_order(const simulation::StageRecord& r) {
 }
 
 ordered_json stage(const simulation::StageRecord& r, const simulation::ModelRecord& model) {
-  ordered_json json = stage_fields_json(r, simulation::StageFile::summary);
+  ordered_json json = stage_fields_json(r, simulation::RecordFile::summary);
   judge(r, json["equilibrium"]);
   json["blocks_by_order"] = blocks_by_order(r);
   json["release"] = release_json(r.release, model.excavation_names);
@@ -154,36 +154,28 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"version", model.version},
       {"seed", model.seed},
       {"realization", model.realization},
-      {"interrupted", run.interrupted},
       {"warnings", model.warnings},
       {"closure_is_lower_bound", model.closure_is_lower_bound},
       {"blocks", blocks},
       {"vertices", vertices},
-      {"dof", run.dof},
       {"joints", model.cutting.joints_used},
       {"area", {{"blocks", area.blocks}, {"excavated", area.excavated}, {"domain", area.domain}}},
       {"merged_slivers", model.cutting.merged_slivers},
       {"cutting", cutting::cutting_json<ordered_json>(model.cutting, false)},
-      {"steps", run.steps},
       {"step_size", model.step_size},
-      {"wall_time_s", run.wall_time},
       {"ms_per_step", run.steps > 0 ? 1e3 * run.wall_time / static_cast<double>(run.steps) : 0.0},
       {"threads", model.threads},
-      {"profile", profile(run)},
-      {"state_hash", run.state_hash},
-      {"open_close", open_close_json(run.open_close)},
-      {"max_overlap_m", run.max_overlap.depth},
-      {"max_overlap_at", overlap_place_json(run.max_overlap, model.origin)},
-      {"contact_checks", contact_checks_json(run.contact_checks, model.origin)},
-      {"errors", simulation::computation_errors(run)},
-      {"max_area_change", run.max_area_change},
-      {"boundary", boundary(model, run)},
-      {"elements", elements_json(run.elements, model.origin)},
-      {"water", run.water ? water_json(*run.water) : ordered_json()},
-      {"damping", damping(model)},
-      {"energy", energy_json(run.energy)},
-      {"energy_warnings", simulation::energy_warnings(run)},
-      {"stages", stages}};
+      {"profile", profile(run)}};
+  json.update(run_fields_json(run, simulation::RecordFile::summary));
+  json.update({{"max_overlap_at", overlap_place_json(run.max_overlap, model.origin)},
+               {"contact_checks", contact_checks_json(run.contact_checks, model.origin)},
+               {"errors", simulation::computation_errors(run)},
+               {"boundary", boundary(model, run)},
+               {"elements", elements_json(run.elements, model.origin)},
+               {"water", run.water ? water_json(*run.water) : ordered_json()},
+               {"damping", damping(model)},
+               {"energy_warnings", simulation::energy_warnings(run)},
+               {"stages", stages}});
   for (const auto& [name, hash] : model.hooks) json["hooks"].push_back({{"name", name}, {"hash", hash}});
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "core/error.h"
 #include "debian_python.h"
 #include "record/contact_fields.h"
+#include "record/run_fields.h"
 #include "record/stage_fields.h"
 #include "results/record_json.h"
 #include "results/result_writer.h"
@@ -40,15 +42,61 @@ TEST(DescribedOnce, FieldsOfStagesAreInTheGuideAndInTheTypesOfThePage) {
   const simulation::StageRecord stage;
   simulation::visit_stage(stage, [&](const simulation::StageField& field, const auto&) {
     EXPECT_STRNE(field.meaning, "") << field.name;
-    if (field.file == simulation::StageFile::summary) {
+    if (field.file == simulation::RecordFile::summary) {
       const std::string name = std::string("stages[].") + field.name;
       const bool is_told = has(guide, "`" + name) || has(guide, "`." + last_part(field.name) + "`");
       EXPECT_TRUE(is_told) << "docs/guide/results.md has no " << name;
     }
     const bool is_typed = has(types, " " + last_part(field.name) + ": ");
-    EXPECT_TRUE(is_typed || field.file == simulation::StageFile::result)
+    EXPECT_TRUE(is_typed || field.file == simulation::RecordFile::result)
         << "viewer/src/data.ts has no " << field.name;
   });
+}
+
+std::string table_of_stages() {
+  std::string table = "| field | unit | what | also in |\n|---|---|---|---|\n";
+  const simulation::StageRecord stage;
+  simulation::visit_stage(stage, [&](const simulation::StageField& field, const auto&) {
+    std::string row = "| `" + std::string(field.name) + "`";
+    const char* also = field.file == simulation::RecordFile::summary ? "summary.json, report"
+                       : field.file == simulation::RecordFile::page  ? "report"
+                                                                     : "";
+    for (const char* cell : {field.unit, field.meaning, also}) row += std::string(" | ") + cell;
+    table += row + " |\n";
+  });
+  return table;
+}
+
+// With KEYBLOCK_UPDATE_EXPECTED set, the table of the page is written instead of compared.
+TEST(DescribedOnce, ThePageOfTheResultFileHasTheFieldsOfStages) {
+  const std::string begin = "<!-- written by tests/unit/results/described_once_test.cpp -->\n",
+                    end = "<!-- the end of it -->";
+  const std::string page = source("docs/result-file.md");
+  const std::size_t from = page.find(begin) + begin.size(), to = page.find(end);
+  ASSERT_LT(from, to);
+  const std::string expected = page.substr(0, from) + table_of_stages() + page.substr(to);
+  if (std::getenv("KEYBLOCK_UPDATE_EXPECTED") != nullptr) {
+    write_file_atomically(std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "docs/result-file.md", expected);
+    return;
+  }
+  EXPECT_EQ(page, expected) << "run this test with KEYBLOCK_UPDATE_EXPECTED=1 set and commit the page";
+}
+
+TEST(DescribedOnce, FieldsOfRunsAreInTheGuideAndReadByEarlierNames) {
+  const std::string guide = source("docs/guide/results.md");
+  SampleRun sample;
+  const simulation::RunRecord run = sample.run();
+  ordered_json written = ordered_json::parse(run_json(run));
+  simulation::visit_run(run, [&](const simulation::RunField& field, const auto&) {
+    const bool is_told = has(guide, "`" + std::string(field.name));
+    EXPECT_TRUE(is_told || field.file != simulation::RecordFile::summary)
+        << "docs/guide/results.md has no " << field.name;
+    if (field.earlier == nullptr) return;
+    written[field.earlier] = written.at(field.name);
+    written.erase(field.name);
+  });
+  EXPECT_FALSE(written.contains("wall_time_s"));
+  EXPECT_EQ(run_json(read_run_json(written.dump())), run_json(run));
 }
 
 // All bytes of a record are in the table but for what lies between members of different sizes, and what the scenario says of a stage.
@@ -86,24 +134,24 @@ TEST(DescribedOnce, NumbersOfContactsAreOnThePageOfTheResultFile) {
 TEST(DescribedOnce, StagesByTheNamesOfEarlierVersionsAreRead) {
   SampleRun sample;
   const simulation::StageRecord stage = sample.stage(0);
-  ordered_json json = ordered_json::parse(stage_json(0, stage, true));
+  ordered_json written = ordered_json::parse(stage_json(0, stage, true));
   int renamed = 0;
   simulation::visit_stage(stage, [&](const simulation::StageField& field, const auto&) {
     if (field.earlier == nullptr) return;
     const std::string name = field.name;
-    ordered_json& group = has(name, ".") ? json[name.substr(0, name.find('.'))] : json;
-    json[field.earlier] = group.at(last_part(name));
+    ordered_json& group = has(name, ".") ? written[name.substr(0, name.find('.'))] : written;
+    written[field.earlier] = group.at(last_part(name));
     group.erase(last_part(name));
     ++renamed;
   });
-  json.erase("equilibrium");
+  written.erase("equilibrium");
   EXPECT_EQ(renamed, 11);
-  const StageLine line = read_stage_json(json.dump());
+  const StageLine line = read_stage_json(written.dump());
   EXPECT_EQ(stage_json(0, line.stage, true), stage_json(0, stage, true));
-  json.erase("pgv");  // as in version 0.1
-  EXPECT_EQ(read_stage_json(json.dump()).stage.pgv, 0.0);
-  json.erase("pga");
-  EXPECT_THROW(read_stage_json(json.dump()), InputError);
+  written.erase("pgv");  // as in version 0.1
+  EXPECT_EQ(read_stage_json(written.dump()).stage.pgv, 0.0);
+  written.erase("pga");
+  EXPECT_THROW(read_stage_json(written.dump()), InputError);
 }
 
 TEST(DescribedOnce, ContactsWithTheSizeOfTheirSlipAloneAreRead) {

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace keyblock::simulation {
+
+/// How far a field of a record goes: each of these has the fields of the ones before it.
+enum class RecordFile : unsigned char {
+  summary,  ///< summary.json
+  page,     ///< the report
+  result,   ///< result.h5, and checkpoints
+};
+
+}  // namespace keyblock::simulation
