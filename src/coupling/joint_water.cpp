@@ -87,7 +87,7 @@ std::vector<JointWater::Load> JointWater::loads_of(const Water& water, const con
 
 JointWater::Wetness JointWater::wetness(const Model& model, const State& state,
                                         std::span<const double> memory) const {
-  Wetness wet{.memory = memory, .drains = model.water_drains, .filled = {}, .in_water = {}};
+  Wetness wet{.memory = memory, .filled = {}};
   for (std::size_t e = 0; e < openings_.size(); ++e) {
     const std::vector<int>& inside = openings_[e].inside;
     const bool is_open = !inside.empty() && std::ranges::none_of(inside, [&](int b) {
@@ -96,20 +96,18 @@ JointWater::Wetness JointWater::wetness(const Model& model, const State& state,
     const double released = state.walls.released.empty() ? 1.0 : state.walls.released[e];
     wet.filled.push_back(!is_open ? is_closed : openings_[e].is_filled ? released : 0.0);
   }
-  wet.in_water.resize(model.blocks.size());
-  for (const Load& load : loads_[at(model.water)]) {
-    const WaterFace& face = faces_[load.face];
-    const bool is_outside = face.excavation < 0 && !face.is_rock && wet.remembered(face.vertex) == 0.0;
-    if (is_outside) wet.in_water[at(model.surface.block[at(face.vertex)])] = 1;
-  }
+  wet.drains = model.water_drains && std::ranges::any_of(loads_[at(model.water)], [&](const Load& load) {
+                 const WaterFace& face = faces_[load.face];
+                 return face.excavation >= 0 && wet.filled[at(face.excavation)] == 0.0 &&
+                        model.moves(at(model.surface.block[at(face.vertex)]));
+               });
   return wet;
 }
 
-double JointWater::share_wet(const Model& model, const WaterFace& face, const Wetness& wet) {
+double JointWater::share_wet(const WaterFace& face, const Wetness& wet) {
   const bool is_wall = face.excavation >= 0 && wet.filled[at(face.excavation)] != is_closed;
   if (is_wall) return wet.filled[at(face.excavation)];
-  const bool has_left = wet.drains && wet.remembered(face.vertex) == has_opened &&
-                        wet.in_water[at(model.surface.block[at(face.vertex)])] == 0;
+  const bool has_left = wet.drains && wet.remembered(face.vertex) == has_opened;
   return face.is_rock || has_left ? 0.0 : 1.0;
 }
 
@@ -123,7 +121,7 @@ void JointWater::for_forces(const Model& model, const State& state, std::span<co
     const WaterFace& face = faces_[load.face];
     const std::size_t v = at(face.vertex), b = at(surface.block[v]);
     if (!model.moves(b)) continue;
-    const double share = share_wet(model, face, wet);
+    const double share = share_wet(face, wet);
     if (share == 0.0) continue;
     const std::size_t next = at(surface.next[v]);
     // The block is on the left of its edge.
@@ -181,7 +179,7 @@ std::vector<double> JointWater::pressures(const Model& model, const State& state
     for (auto face = std::ranges::lower_bound(faces_, edge, {}, &WaterFace::vertex);
          face != faces_.end() && face->vertex == edge; ++face) {
       if (s < face->from || s > face->to) continue;
-      pressures[k] = share_wet(model, *face, wet) * water.weight * water.table.head(place);
+      pressures[k] = share_wet(*face, wet) * water.weight * water.table.head(place);
       break;
     }
   }
@@ -228,7 +226,7 @@ WaterTotals JointWater::totals(const Model& model, const State& state, std::span
     if (!model.moves(at(model.surface.block[v]))) continue;
     const Vec2 from = model.reference[v], to = model.reference[next];
     const double length = (face.to - face.from) * norm(to - from);
-    if (share_wet(model, face, wet) == 0.0) {
+    if (share_wet(face, wet) == 0.0) {
       totals.drained += face.is_rock && face.excavation < 0 ? 0.0 : length;
       continue;
     }

@@ -49,8 +49,8 @@ struct WateredBlock {
 /// is the effective force. Which faces are wet is known at the start of a step:
 ///
 ///   - a face that lay along no other when the run began is an outside face, and always wet;
-///   - a joint is wet as long as its edge has a contact; without one the water runs out, until it closes again. It does not in static
-///     steps, which take no time (Model::water_drains), nor from a block that has an outside face under water, into which the joint opens;
+///   - a joint is wet as long as its edge has a contact. Without one the water runs out, until it closes again, if there is a drained opening
+///     below the table to run into. In static steps, which take no time, it does not (Model::water_drains);
 ///   - the wall of an opening is drained, or wet where the opening is filled, in proportion to what of the forces of its rock is released.
 ///
 /// Fixed blocks feel no water. Its work is EnergyLedger::water.
@@ -92,16 +92,15 @@ class JointWater final : public Coupling, public StillWater {
   /// What says which faces are wet.
   struct Wetness {
     std::span<const double> memory;  ///< empty before the first step
-    bool drains = false;             ///< water leaves joints that have opened
     std::vector<double> filled;  ///< per opening: how much of the water presses on its wall; −1: it is closed
-    std::vector<std::uint8_t> in_water;  ///< per block: it has an outside face under water
+    bool drains = false;         ///< water leaves joints that have opened
     [[nodiscard]] double remembered(int edge) const {
       return memory.empty() ? 0.0 : memory[static_cast<std::size_t>(edge)];
     }
   };
   [[nodiscard]] Wetness wetness(const Model& model, const State& state, std::span<const double> memory) const;
   /// How much of the water presses on a face, 0 to 1.
-  [[nodiscard]] static double share_wet(const Model& model, const WaterFace& face, const Wetness& wet);
+  [[nodiscard]] static double share_wet(const WaterFace& face, const Wetness& wet);
   /// Calls of_force(face, block, vertex, force) for all that act, N per thickness.
   template <typename OfForce>
   void for_forces(const Model& model, const State& state, std::span<const double> memory,

@@ -26,7 +26,7 @@ Checked check(const scenario::Scenario& scenario, int realization) {
     simulation::build_model(setup);
     for (const auto& [name, value] : setup.ground) {
       const bool is_turned = name == "gravity" && value.find("downwards") != std::string::npos;
-      if (name == "boundary" || is_turned || name.starts_with("earthquake"))
+      if (name == "boundary" || is_turned || name.starts_with("earthquake") || name.starts_with("water"))
         checked.notes.push_back(fmt::format("{}: {}", name, value));
     }
     for (const auto& [name, value] : scenario::boundary_facts(setup))

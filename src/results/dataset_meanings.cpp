@@ -205,7 +205,7 @@ std::vector<Meaning> of_elements(const simulation::ModelRecord& model) {
   std::vector<Meaning> all{{"element", "1", "number of the element"},
                            {"end", "", "of elements"},
                            {"elements/name", "", "names, as in summary.json"},
-                           {"elements/kind", "", "what each is: spring, support, boundary, pressure"},
+                           {"elements/kind", "", "what each is: spring, support, boundary, pressure, water"},
                            {"elements/limit", "N/m", "largest force that it can carry; infinite: none"},
                            {"elements/reference",
                             "m",

@@ -257,11 +257,14 @@ void read_element(TableReader& t, simulation::History& history) {
     history.element = name;
   };
   std::string name;
-  if (t.string("element", name,
-               {.meaning = "In the place of a point: what an element carries, its force and elongation. The "
-                           "name is that in `elements` of summary.json: of a spring, a support, a side of "
-                           "the boundary (`boundary.base`) or a wall under pressure (`tunnel.crown`).",
-                .fallback = "none"}))
+  if (t.string(
+          "element", name,
+          {.meaning =
+               "In the place of a point: what an element carries, its force and elongation. The "
+               "name is that in `elements` of summary.json: of a spring, a support, a side of "
+               "the boundary (`boundary.base`), a wall under pressure (`tunnel.crown`) or of the water on a "
+               "block (`water.dam`).",
+           .fallback = "none"}))
     take(name);
   if (t.reference("spring", name, "spring",
                   {.meaning = "The same, for a spring by its name.", .fallback = "none"}))

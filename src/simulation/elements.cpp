@@ -86,7 +86,7 @@ int element_of(const Model& model, const History& history) {
     names += (names.empty() ? "" : ", ") + e->name;
   }
   refuse(key, fmt::format("\"{}\"", history.element),
-         all.empty() ? "an element; the model has no springs, supports, boundaries or pressures"
+         all.empty() ? "an element; the model has no springs, supports, boundaries, pressures or water"
                      : "the name of an element: " + names);
 }
 

@@ -124,6 +124,7 @@ ADDITIONS = {
                     "src/model/state.h",
                     "src/coupling/wall_loads.h",
                     "src/coupling/wall_loads.cpp",
+                    "src/coupling/joint_water.cpp",  # water fills an opening as its forces are released
                     "src/simulation/build_model.cpp",
                     "src/simulation/checkpoint.cpp",
                     "src/simulation/checkpoint_checks.cpp",

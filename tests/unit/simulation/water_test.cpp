@@ -135,6 +135,21 @@ TEST(Water, StaysInJointsThatOpenIntoIt) {
   EXPECT_LT(record.energy.residual_ratio, 1e-6);
 }
 
+// A slope 5 % beyond its limit, with a joint for a tension crack, slides on as the crack opens.
+TEST(Water, StaysInTheCrackOfASlope) {
+  Scene scene(5e10, 57.8, 26e3 / g);
+  const double x = 12.0 / std::tan(75.0 * degree) + 3.0, y = x * std::tan(30.0 * degree);
+  scene.add({{0.0, -10.0}, {36.0, -10.0}, {36.0, 12.0}, {x, 12.0}, {x, y}, {0.0, 0.0}}, true);
+  scene.add({{0.0, 0.0}, {x, y}, {x, 12.0}, {x - 3.0, 12.0}});
+  scene.setup.waters = {{"full", loading::WaterTable({{0.0, 0.0}, {x, 12.0}}), 1000.0, {}}};
+  scene.setup.time_step = 0.005;
+  scene.setup.stages = {stage("slide", StageKind::rest, 2.0)};
+  RunObserver nobody;
+  const RunRecord record = run(scene.setup, {}, nobody);
+  EXPECT_EQ(record.water->drained, 0.0);
+  EXPECT_GT(record.stages[0].damage.displacement_max, 0.3);
+}
+
 // Above a drained opening it falls with g.
 TEST(Water, LeavesJointsThatOpen) {
   Scene scene = wet_roof();
