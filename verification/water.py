@@ -1,4 +1,4 @@
-"""Case 45, water in joints and around blocks, as generate.py writes it."""
+"""Case 46, water in joints and around blocks, as generate.py writes it."""
 
 import math
 
@@ -163,5 +163,5 @@ def water():
         "A dam with uplift; a block under water, whose factor is that of the dry block; water in the joint below a block alone. All at 0.1 % from the limit, at every order and number of contacts. "
         "A block lighter than water rises with (ρ_w/ρ − 1) g. A key block falls out of wet rock with g, as water leaves joints that open."
     )
-    text = f'title = "Water in joints"\ncase  = 45\nabout = """{about}"""\n'
+    text = f'title = "Water in joints"\ncase  = 46\nabout = """{about}"""\n'
     case("water", text + plane_failures() + dam() + submerged() + base_joints() + rising() + falling())

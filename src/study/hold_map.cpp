@@ -111,7 +111,8 @@ class Picture {
       y += line_height;
     };
     if (std::ranges::find(map_.lost, true) != map_.lost.end())
-      line(ramp_color(0.0), "goes at " + quantity(result_.request.from, result_.unit, legend_digits) + " already");
+      line(ramp_color(0.0),
+           "goes at " + quantity(result_.request.from, result_.unit, legend_digits) + " already");
     for (const double level : levels_)
       line(color_of(level), "holds to " + quantity(level, result_.unit, legend_digits));
     return svg;
