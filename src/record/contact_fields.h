@@ -12,7 +12,8 @@ struct ContactField {
   bool ContactParts::*part;  ///< what contacts are asked for, to have it
   /// The column has the size of the number alone. Results that have no other column of it are read by this one.
   bool is_magnitude = false;
-  bool is_late = false;  ///< results of earlier versions do not have it: it is read as NaN
+  bool is_late =
+      false;  ///< results of earlier versions do not have it: contacts have it as ContactRecord begins
 
   [[nodiscard]] double of(const ContactRecord& contact) const {
     return is_magnitude ? std::abs(contact.*number) : contact.*number;

@@ -32,8 +32,6 @@ class Numbers {
     return rows;
   }
   void put(std::size_t row, ContactRecord& contact) const {
-    for (const ContactField& field : contact_fields)
-      if (field.is_late) contact.*field.number = std::nan("");
     for (const auto& [field, column] : columns_) contact.*field->number = column.values[row];
   }
 

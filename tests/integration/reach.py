@@ -69,7 +69,7 @@ ADDITIONS = {
         5,
         {
             "largest way out of balance, over the block size": (
-                r"way_share",
+                r"way = 0\.0, way_share|\.way_share|largest_way_share",
                 {
                     "src/record/record.h",
                     "src/record/stage_fields.h",
@@ -106,8 +106,7 @@ ADDITIONS = {
                 {
                     "src/contact/joint_law.h",
                     "src/contact/joint_properties.h",
-                    "src/simulation/build_model.cpp",
-                    "src/simulation/control.cpp",  # programs change strengths of a running model
+                    "src/simulation/joint_laws.cpp",  # also where programs and stages change strengths of a running model
                     "src/scenario/ground_facts.cpp",
                     "src/scenario/strength_checks.cpp",
                     "src/scenario/synonyms.cpp",

@@ -35,6 +35,9 @@ export interface Stage {
   /** Seismic coefficients of a static stage, over the weight. */
   k_h: number;
   k_v: number;
+  /** What the strength of joints is divided by while it lasts; names of these joints, none: of all. */
+  strength_factor: number;
+  strength_of: string[];
   scale: number;
   tolerance: number;
   steps: number;
