@@ -45,7 +45,7 @@ struct WateredBlock {
 ///
 ///     p(X) = γ max(0, y_w(X) − Y)       f_k = −∫ p n φ_k ds
 ///
-/// so that nothing slides out of its water (docs/decisions/0027-water.md). Both faces of a joint have the same p: what springs of contacts carry
+/// so that nothing slides out of its water (docs/decisions/0028-water.md). Both faces of a joint have the same p: what springs of contacts carry
 /// is the effective force. Which faces are wet is known at the start of a step:
 ///
 ///   - a face that lay along no other when the run began is an outside face, and always wet;

@@ -33,6 +33,8 @@ inline constexpr ContactField contact_fields[] = {
     {"shear_force", "N/m", "per metre of thickness; on block_a along (normal_y, -normal_x)",
      &ContactRecord::shear_force, &ContactParts::forces},
     {"water_pressure", "Pa", "of the water in the joint, beside which the forces are effective",
-     &ContactRecord::water_pressure, &ContactParts::forces, false, true}};
+     &ContactRecord::water_pressure, &ContactParts::forces, false, true},
+    {"strength_left", "1", "of what slip or opening takes from a joint; 0 of a bond that has broken",
+     &ContactRecord::strength_left, &ContactParts::strengths, false, true}};
 
 }  // namespace keyblock::simulation

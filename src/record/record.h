@@ -116,6 +116,8 @@ struct ContactRecord {
   double shear_force = 0.0;         ///< the same; against perpendicular(normal) on block_a
   cutting::EdgeLabel label;         ///< of the edge
   double water_pressure = 0.0;  ///< Pa, of the water in the joint: the forces are what it leaves to the rock
+  /// Of what slip or opening takes from a joint: JointLaw::share_left, and 0 of a bond that has broken; 1 of joints that keep their strength.
+  double strength_left = 1.0;
   // Of a running model alone; results do not keep them.
   int vertex = 0, edge = 0;              ///< of the surface
   double friction = 0.0;                 ///< coefficient

@@ -139,7 +139,7 @@ void add_contacts(const results::RunData& run, const std::vector<std::size_t>& f
   }
   std::vector<std::uint32_t> vertex;
   std::vector<std::uint8_t> from, to, state;
-  std::vector<float> slip, gap;
+  std::vector<float> slip, gap, lost, pressure;
   const auto share = [](float s) { return static_cast<std::uint8_t>(std::lround(255.0F * s)); };
   for (const results::JointPiece& piece : pieces) {
     vertex.push_back(piece.vertex);
@@ -148,6 +148,8 @@ void add_contacts(const results::RunData& run, const std::vector<std::size_t>& f
     state.push_back(static_cast<std::uint8_t>(piece.state));
     slip.push_back(piece.slip);
     gap.push_back(piece.gap);
+    lost.push_back(piece.lost);
+    pressure.push_back(piece.pressure);
   }
   pack.add("snapshot.frame", frame_index);
   pack.add("snapshot.begin", begin);
@@ -157,6 +159,10 @@ void add_contacts(const results::RunData& run, const std::vector<std::size_t>& f
   pack.add("piece.state", state);
   pack.add("piece.slip", slip);
   pack.add("piece.gap", gap);
+  // What no joint has is not in the page, and nobody can ask for it there.
+  const auto is_any = [](float value) { return value > 0.0F; };
+  if (std::ranges::any_of(lost, is_any)) pack.add("piece.lost", lost);
+  if (std::ranges::any_of(pressure, is_any)) pack.add("piece.pressure", pressure);
 }
 
 void add_curves(std::string_view x_name, std::string_view values_name, const Curves& curves,

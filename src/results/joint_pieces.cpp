@@ -144,7 +144,9 @@ void JointLocator::locate(std::span<const ContactRecord> contacts, Displacement 
       if (!(to > from)) continue;
       pieces.push_back({vertices[k], static_cast<float>((from - arc[k]) / length),
                         static_cast<float>((to - arc[k]) / length), static_cast<float>(contact.slip()),
-                        static_cast<float>(contact.gap), contact.state});
+                        static_cast<float>(contact.gap), contact.state,
+                        static_cast<float>(1.0 - contact.strength_left),
+                        static_cast<float>(contact.water_pressure)});
     }
   }
 }

@@ -17,6 +17,8 @@ struct JointPiece {
   float slip = 0.0F;  ///< m, without sign
   float gap = 0.0F;   ///< m
   simulation::ContactState state = simulation::ContactState::open;
+  float lost = 0.0F;      ///< share of strength: 1 − ContactRecord::strength_left
+  float pressure = 0.0F;  ///< Pa, of water
 };
 
 /// Finds where contacts lie. A straight edge of the reference configuration, which may consist of several

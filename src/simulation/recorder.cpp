@@ -70,12 +70,19 @@ void put_forces(std::span<const dynamics::ContactForce> forces, std::span<Contac
   }
 }
 
-void put_strengths(std::span<const contact::Contact> contacts, std::span<ContactRecord> to) {
+double strength_left(const contact::JointLaw& law, const contact::Memory& memory) {
+  if (law.has_memory()) return law.share_left(memory.worn);
+  return law.may_bond() && !law.fused && !memory.bonded ? 0.0 : 1.0;
+}
+
+void put_strengths(const dynamics::Model& model, std::span<const contact::Contact> contacts,
+                   std::span<ContactRecord> to) {
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const contact::Contact& c = contacts[k];
     to[k].friction = c.friction_coefficient;
     to[k].cohesion = c.length > 0.0 ? c.cohesion / c.length : 0.0;
     to[k].tension = c.length > 0.0 ? c.tension / c.length : 0.0;
+    to[k].strength_left = strength_left(model.laws[at(model.surface.joint[at(c.edge)])], c.memory);
   }
 }
 
@@ -237,7 +244,7 @@ void Recorder::each_contact(const dynamics::Stepper& stepper, const TakeContacts
     const std::size_t count = std::min(at_a_time, stepper.force_count() - first);
     const auto some = contacts.subspan(first, count);
     if (parts.places) put_places(some, records);
-    if (parts.strengths) put_strengths(some, records);
+    if (parts.strengths) put_strengths(model_, some, records);
     if (parts.forces) {
       stepper.forces(first, std::span(forces).first(count));
       put_forces(std::span(forces).first(count), records);

@@ -98,7 +98,9 @@ export class Animation {
       "div",
       { class: "controls screen-only", role: "group", "aria-label": "What the animation shows" },
       choice("Blocks by", blockFields, look.blocks, (v) => change(() => (look.blocks = v as BlockField))),
-      choice("Joints by", jointFields, look.joints, (v) => change(() => (look.joints = v as JointField))),
+      choice("Joints by", jointFields(this.run), look.joints, (v) =>
+        change(() => (look.joints = v as JointField)),
+      ),
       choice("Displacement since", sinceChoices(this.run), String(look.since), (v) =>
         change(() => (look.since = Number(v))),
       ),

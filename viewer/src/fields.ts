@@ -7,7 +7,9 @@ import { EdgeKind, Run, Status, statusNames, type Moment } from "./run";
 /** What blocks may be coloured by. */
 export type BlockField = "displacement" | "mean" | "major" | "minor" | "shear" | "status" | "order" | "plain";
 /** What joints may be coloured by. */
-export type JointField = "plain" | "slip" | "opening" | "state" | "set";
+export type JointField = "plain" | JointNumber | "state" | "set";
+/** Numbers among them. */
+type JointNumber = "slip" | "opening" | "lost" | "pressure";
 
 export const blockFields: { value: BlockField; text: string }[] = [
   { value: "displacement", text: "displacement" },
@@ -19,13 +21,63 @@ export const blockFields: { value: BlockField; text: string }[] = [
   { value: "order", text: "polynomial order" },
   { value: "plain", text: "nothing" },
 ];
-export const jointFields: { value: JointField; text: string }[] = [
-  { value: "plain", text: "nothing" },
-  { value: "slip", text: "slip" },
-  { value: "opening", text: "opening" },
-  { value: "state", text: "contact state" },
-  { value: "set", text: "joint set" },
-];
+interface JointNumberText {
+  array: string;
+  text: string;
+  title: string;
+  note: string;
+  /** A length, from a thousandth of the largest up; else from nothing up. */
+  isLength: boolean;
+  format: (value: number) => string;
+}
+const jointNumbers: Record<JointNumber, JointNumberText> = {
+  slip: {
+    array: "slip",
+    text: "slip",
+    title: "Slip of the joints",
+    note: "shear displacement since the excavation; less than the scale is not drawn",
+    isLength: true,
+    format: (v) => length(v, 2),
+  },
+  opening: {
+    array: "gap",
+    text: "opening",
+    title: "Opening of the joints",
+    note: "gap of the contacts; less than the scale is not drawn",
+    isLength: true,
+    format: (v) => length(v, 2),
+  },
+  lost: {
+    array: "lost",
+    text: "strength lost",
+    title: "Strength that joints have lost",
+    note: "of what slip or opening takes from them; joints with all their strength are not drawn",
+    isLength: false,
+    format: (v) => `${Math.round(100 * v)} %`,
+  },
+  pressure: {
+    array: "pressure",
+    text: "pressure of water",
+    title: "Pressure of water in the joints",
+    note: "dry joints are not drawn",
+    isLength: false,
+    format: (v) => stress(v, 2),
+  },
+};
+const isNumber = (field: JointField): field is JointNumber => field in jointNumbers;
+
+/** Those that the joints of a run have. */
+export function jointFields(run: Run): { value: JointField; text: string }[] {
+  const numbers = (Object.keys(jointNumbers) as JointNumber[]).filter((n) =>
+    run.pieceNumbers.has(jointNumbers[n].array),
+  );
+  return [
+    { value: "plain", text: "nothing" },
+    ...numbers.map((value) => ({ value, text: jointNumbers[value].text })),
+    { value: "state", text: "contact state" },
+    { value: "set", text: "joint set" },
+  ];
+}
 
 const stressTitles: Record<string, string> = {
   mean: "Mean stress (σxx + σyy)/2",
@@ -181,14 +233,20 @@ export class Fields {
     });
   }
 
-  private pieceScale(field: "slip" | "opening"): Scale {
+  private pieceScale(field: JointNumber): Scale {
     return this.cached(field, () => {
-      const source = field === "slip" ? this.run.pieceSlip : this.run.pieceGap;
       let largest = 0;
-      for (const value of source) if (Number.isFinite(value)) largest = Math.max(largest, value);
+      for (const value of this.piecesBy(field))
+        if (Number.isFinite(value)) largest = Math.max(largest, value);
+      if (field === "lost") return { min: 0, max: 1, logarithmic: false };
+      if (!jointNumbers[field].isLength) return { min: 0, max: niceAbove(largest || 1), logarithmic: false };
       const max = niceAbove(Math.max(largest, 1e-5));
       return { min: max / 1e3, max, logarithmic: true };
     });
+  }
+
+  private piecesBy(field: JointNumber): Float32Array {
+    return this.run.pieceNumbers.get(jointNumbers[field].array) ?? new Float32Array();
   }
 
   private cached(key: string, make: () => Scale): Scale {
@@ -252,9 +310,9 @@ export class Fields {
   /** Colour and width (px) of a joint piece; null: not drawn. */
   pieceStyle(field: JointField, piece: number): { color: string; width: number } | null {
     const { run } = this;
-    if (field === "slip" || field === "opening") {
+    if (isNumber(field)) {
       const scale = this.pieceScale(field);
-      const value = field === "slip" ? run.pieceSlip[piece] : run.pieceGap[piece];
+      const value = this.piecesBy(field)[piece];
       if (!(value > scale.min)) return null;
       const t = place(scale, value);
       return { color: this.jointColors[Math.round(t * (this.jointColors.length - 1))], width: 1.2 + 3 * t };
@@ -335,15 +393,10 @@ export class Fields {
           title: "State of the contacts",
           classes: this.stateStyles.map((s) => ({ color: s.color, name: s.name, line: true })),
         };
-      default:
-        return {
-          title: field === "slip" ? "Slip of the joints" : "Opening of the joints",
-          note:
-            field === "slip"
-              ? "shear displacement since the excavation; less than the scale is not drawn"
-              : "gap of the contacts; less than the scale is not drawn",
-          bar: { colors: this.jointColors, scale: this.pieceScale(field), format: (v) => length(v, 2) },
-        };
+      default: {
+        const { title, note, format } = jointNumbers[field];
+        return { title, note, bar: { colors: this.jointColors, scale: this.pieceScale(field), format } };
+      }
     }
   }
 }

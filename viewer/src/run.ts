@@ -50,8 +50,8 @@ export class Run {
   readonly pieceFrom: Uint8Array;
   readonly pieceTo: Uint8Array;
   readonly pieceState: Uint8Array;
-  readonly pieceSlip: Float32Array;
-  readonly pieceGap: Float32Array;
+  /** By the name of their array, `slip` for "piece.slip"; none for what no joint has. */
+  readonly pieceNumbers = new Map<string, Float32Array>();
   private readonly displacement: Float32Array;
   private readonly stress: Float32Array;
   private extentFound: Box | null = null;
@@ -81,8 +81,9 @@ export class Run {
     this.pieceFrom = arrays.get("piece.from", "u8");
     this.pieceTo = arrays.get("piece.to", "u8");
     this.pieceState = arrays.get("piece.state", "u8");
-    this.pieceSlip = arrays.get("piece.slip", "f32");
-    this.pieceGap = arrays.get("piece.gap", "f32");
+    for (const name of ["slip", "gap", "lost", "pressure"]) {
+      if (arrays.has(`piece.${name}`)) this.pieceNumbers.set(name, arrays.get(`piece.${name}`, "f32"));
+    }
     this.blockCount = this.order.length;
     this.vertexCount = this.position.length / 2;
     this.frameCount = this.time.length;
