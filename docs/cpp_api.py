@@ -66,6 +66,9 @@ class _Reader:
         return entries
 
     def _declaration(self, line, comment):
+        if table := re.match(r"inline (constexpr \w+ \w+\[\]) = \{$", line):
+            self._skip_body(line)
+            return [Entry("member", table[1], comment)]
         line, said = self._whole(line)
         comment = comment + said
         words = re.sub(r"KEYBLOCK_API |\[\[nodiscard\]\] |explicit ", "", line)

@@ -88,6 +88,7 @@ struct ContactNumbers {
   ContactColumn column;
   std::vector<double> Contacts::*list;
 };
+/// All of them.
 inline constexpr ContactNumbers contact_numbers[] = {
     {"length", ContactColumn::length, &Contacts::length},
     {"gap", ContactColumn::gap, &Contacts::gap},

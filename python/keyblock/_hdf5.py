@@ -181,7 +181,10 @@ class ResultFile:
         """Times of the rows of a group that are complete, s. While a run goes on, a row may be in the making."""
         time = self.read(f"{group}/time")
         unwritten = np.flatnonzero(np.isnan(time))
-        return time[: unwritten[0]] if unwritten.size else time
+        time = time[: unwritten[0]] if unwritten.size else time
+        if np.isinf(time).any():
+            raise DamagedError(f"{self.path} is damaged: {group}/time has a moment that is infinite")
+        return time
 
     def _attribute(self, name: str, attribute: str) -> Any:
         """Of a dataset; None where it has none, or none that can be read."""

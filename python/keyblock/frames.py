@@ -67,14 +67,14 @@ class Moments:
         if not first - spacing - 1e-9 <= time <= last + spacing + 1e-9:
             raise ValueError(f"no {self.what} at {time:g} s: there are some from {first:g} to {last:g} s")
         apart = np.abs(self.time - time)
-        return int(np.flatnonzero(apart == np.nanmin(apart))[-1])
+        return int(np.flatnonzero(apart == apart.min())[-1])
 
     def nearest_to(self, time: float, step: int) -> int:
         """The row nearest in time; of several, the nearest in steps. −1 where there is none."""
         if len(self) == 0:
             return -1
         apart = np.abs(self.time - time)
-        rows = np.flatnonzero(apart == np.nanmin(apart))
+        rows = np.flatnonzero(apart == apart.min())
         return int(rows[np.argmin(np.abs(self.step[rows] - step))])
 
     def stage_name(self, row: int) -> str:

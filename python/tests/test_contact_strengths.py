@@ -129,3 +129,27 @@ def test_looking_at_contacts_copies_nothing_else() -> None:
     contacts = sim.contacts
     contacts.slip.max()
     assert set(contacts._columns) == {"slip"}
+
+
+def test_strength_left_is_in_results(tmp_path: Path) -> None:
+    """A block slides down a slope of 30° and wears its joint: 1 − slip / d_c, then nothing."""
+    scenario = kb.Scenario.load(ROOT / "verification/scenarios/weakening_slide.toml")
+    a = np.radians(30.0)
+    scenario["gravity"] = [-9.81 * float(np.sin(a)), -9.81 * float(np.cos(a))]
+    scenario.joints.update(friction=29.5, residual_friction=25.0, weakening_slip=0.02)
+    scenario.output = {"contact_interval": 0.05}
+    scenario.run(tmp_path / "worn")
+    with kb.open(tmp_path / "worn") as run:
+        before = run.contacts(0.0)
+        assert before.strength_left == pytest.approx(1.0), "what turns gravity on takes no strength"
+        left = []
+        for time in np.linspace(0.05, 1.0, 20):
+            contacts = run.contacts(time)
+            # Strength is what the last step had, in which the block goes by up to 0.7 mm.
+            worn = np.clip((contacts.slip - before.slip) / 0.02, 0.0, 1.0)
+            assert np.all(contacts.strength_left >= 1.0 - worn - 1e-9) and np.all(contacts.strength_left <= 1.0 - worn + 0.0007 / 0.02)
+            left.append(float(contacts.strength_left.min()))
+        assert left == sorted(left, reverse=True) and left[0] > 0.9 and left[-1] == 0.0 and any(0.1 < value < 0.9 for value in left)
+        assert contacts.table().attrs["units"]["strength_left"] == ""
+    page = (tmp_path / "worn/report.html").read_text()
+    assert '"piece.lost"' in page and '"piece.pressure"' not in page

@@ -11,6 +11,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "record/damage_fields.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/key_reference.h"
@@ -79,6 +80,17 @@ void check_since(const LimitRequest& request, std::span<const simulation::Stage>
          earlier.empty() ? "nothing, as there is no stage before the last one"
                          : "a stage before the last one: " + scenario::list_words(earlier),
          scenario::suggestion(request.since, earlier));
+}
+
+/// A measure of elements is not known where none has a limit: it would never be above anything.
+void check_measure(const LimitRequest& request, const scenario::Scenario& scenario) {
+  const auto yields = [](const loading::Spring& spring) { return spring.yield.has_value(); };
+  if (std::ranges::any_of(scenario.springs, yields)) return;
+  simulation::for_damage_fields([&](const auto& field) {
+    if (request.criterion.measure == field.name && field.column.table == simulation::DamageTable::elements)
+      refuse("--until", '"' + request.criterion.measure + '"',
+             "a measure that the scenario has: no [[spring]] has a yield");
+  });
 }
 
 class Search {
@@ -337,6 +349,7 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
   Plan plan = make_plan(scenario, version, &warnings);
   const scenario::Scenario read = scenario_at(plan, request, request.from);
   request.criterion = chosen_criterion(read, request.key, until, above);
+  check_measure(request, read);
   request.has_rest = needs_rest(request.criterion, read);
   request.finds_moving =
       !request.criterion.by_standing && std::string_view(limit_default(read).criterion) != "fallen";

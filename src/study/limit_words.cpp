@@ -308,6 +308,9 @@ std::string limit_text(const LimitResult& result) {
 
 std::string not_met_hint(const LimitResult& result) {
   const RealizationLimit& limit = result.realizations.front();
+  const auto is_known = [](const LimitTrial& trial) { return std::isfinite(trial.measure); };
+  if (std::ranges::none_of(limit.trials, is_known))
+    return fmt::format("this model has no {}: it is null in summary.json", result.request.criterion.measure);
   const std::string already = already_text(result, limit);
   if (!already.empty()) return already;
   if (limit.trials.front().state_hash == limit.trials.back().state_hash)

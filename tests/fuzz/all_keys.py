@@ -1,5 +1,5 @@
 """Scenarios that are right, from a seed, with the keys of waves, staged opening and support together: [boundary] × release × pressure with
-arc × springs with yield and install × damping × until = "still" × tilt × water, with every rule of integration, both contacts, orders 1 to 3."""
+arc × springs with yield and install × damping × until = "still" × tilt × water × strength that a stage reduces, with every rule of integration, both contacts, orders 1 to 3."""
 
 from random_scenario import Writer, number
 
@@ -93,4 +93,6 @@ def scenario_of_all_keys(seed):
     text = writer.write()
     if seed % 3 == 0:  # no draw, so that scenarios of other seeds stay
         text += f"\n[water]\ntable = [[-2.0, {(seed % 7) - 2}.5], [2.0, {seed % 5}.25]]\n"
+    if seed % 5 == 2:
+        text = text.replace('name = "after"\n', f'name = "after"\nstrength_factor = {1.0 + (seed % 7) / 3.0:.3f}\n')
     return text, writer.facts, writer.size

@@ -414,6 +414,14 @@ class Refusals(Limit):
             self.assertIn(said, self.refused(*words.split()), words)
         self.assertFalse((self.folder / "out").exists())
 
+    def test_measures_that_the_scenario_has_no_number_for(self):
+        for measure in ("largest_utilization", "yielded_elements"):
+            said = self.limit(INCLINE, "--key", "joints.friction", "--from", 45, "--to", 5, "--until", measure, expect=1).stderr
+            self.assertIn("no [[spring]] has a yield", said)
+            self.assertFalse((self.folder / "out").exists())
+        said = self.limit(INCLINE, "--key", "joints.friction", "--from", 45, "--to", 5, "--until", "closure_vertical_m", expect=1).stderr
+        self.assertIn("this model has no closure_vertical_m: it is null in summary.json", said)
+
     def test_folders_of_others(self):
         key = ("--from", 45, "--to", 5)
         self.limit(INCLINE, "--until", "collapsed", "--key", "joints.friction", *key)
