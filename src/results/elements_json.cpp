@@ -8,6 +8,7 @@
 #include "core/checked_json.h"
 #include "core/error.h"
 #include "results/csv.h"
+#include "results/json_parts.h"
 
 namespace keyblock::results {
 
@@ -17,9 +18,6 @@ using simulation::element_state_fields;
 using simulation::ElementRecord;
 
 namespace {
-ordered_json number_or_null(double x) {
-  return std::isfinite(x) ? ordered_json(x) : ordered_json();
-}
 ordered_json place(Vec2 p) {
   return {p.x, p.y};
 }

@@ -38,6 +38,10 @@ ordered_json or_null(const std::optional<int>& value) {
   return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
+ordered_json number_or_null(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json();
+}
+
 ordered_json damage_json(const simulation::Damage& damage) {
   ordered_json json;
   simulation::for_damage_fields([&](const auto& field) { json[field.name] = damage.*field.number; });

@@ -66,5 +66,7 @@ double number(const nlohmann::ordered_json& value);
 
 nlohmann::ordered_json or_null(const std::optional<double>& value);
 nlohmann::ordered_json or_null(const std::optional<int>& value);
+/// null: it is infinite, or no number.
+nlohmann::ordered_json number_or_null(double value);
 
 }  // namespace keyblock::results

@@ -15,7 +15,7 @@ using dynamics::RockLayer;
 
 constexpr double share_of_width = 0.25, blocks_wide = 6.0;  // of a strip
 constexpr double least_filled = 0.9;                        // of a strip, by blocks
-constexpr double alike = 1.03;                              // impedances of bands that are one layer
+constexpr double one_layer = 1.03;                          // impedances of bands that are one layer
 constexpr double alike_sides = 1.15;                        // impedances of sides that are one
 constexpr double jump = 1.5;    // of compliances, where a band ends without a change of the rock
 constexpr double slice = 0.25;  // of a block, in which a change is looked for
@@ -170,7 +170,7 @@ class Strips {
     for (std::size_t k = 1; k + 1 < heights.size();) {
       const auto below = sample(sides, heights[k - 1], heights[k]).layer(0.0),
                  above = sample(sides, heights[k], heights[k + 1]).layer(0.0);
-      if (below && above && contrast_of(*below, *above) > alike)
+      if (below && above && contrast_of(*below, *above) > one_layer)
         ++k;
       else
         heights.erase(heights.begin() + static_cast<std::ptrdiff_t>(k));

@@ -4,13 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/checked_json.h"
 #include "core/error.h"
 #include "core/index.h"
 #include "core/parallel.h"
 #include "results/csv.h"
+#include "results/json_parts.h"
 #include "scenario/key_blocks.h"
 #include "study/summaries.h"
 
@@ -41,14 +41,10 @@ std::vector<double> sample_of(const CensusStudy& study, const CensusMeasure& mea
   return sample;
 }
 
-ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json();
-}
-
 ordered_json estimate_json(const Estimate& estimate) {
-  return {{"value", number_or_null(estimate.value)},
-          {"low", number_or_null(estimate.low)},
-          {"high", number_or_null(estimate.high)}};
+  return {{"value", results::number_or_null(estimate.value)},
+          {"low", results::number_or_null(estimate.low)},
+          {"high", results::number_or_null(estimate.high)}};
 }
 
 ordered_json description_json(const statistics::Description& description) {
@@ -60,8 +56,8 @@ ordered_json description_json(const statistics::Description& description) {
   }
   return {{"mean", estimate_json(description.mean)},
           {"standard_deviation", estimate_json(description.standard_deviation)},
-          {"min", number_or_null(description.min)},
-          {"max", number_or_null(description.max)},
+          {"min", results::number_or_null(description.min)},
+          {"max", results::number_or_null(description.max)},
           {"quantiles", quantiles}};
 }
 

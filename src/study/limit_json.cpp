@@ -29,10 +29,6 @@ const char* status_word(const RealizationLimit& limit) {
   return "open";
 }
 
-ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json();
-}
-
 ordered_json bound_json(const LimitQuantile& quantile) {
   if (quantile.at_least && quantile.at_most) return "not known";
   if (quantile.at_least) return "at least";
@@ -42,8 +38,8 @@ ordered_json bound_json(const LimitQuantile& quantile) {
 ordered_json trial_json(const LimitTrial& trial) {
   return {{"value", trial.value},
           {"met", trial.met},
-          {"measure", number_or_null(trial.measure)},
-          {"moving_area_m2", number_or_null(trial.moving_area)},
+          {"measure", results::number_or_null(trial.measure)},
+          {"moving_area_m2", results::number_or_null(trial.moving_area)},
           {"standing", simulation::standing_name(trial.standing)},
           {"movers", results::movers_json(trial.movers)},
           {"run", "runs/" + trial.run},
@@ -79,7 +75,7 @@ ordered_json realization_json(const RealizationLimit& limit) {
   return {{"realization", limit.realization},
           {"status", status_word(limit)},
           {"bracket", bracket},
-          {"limit", limit.found() ? number_or_null(limit.limit()) : ordered_json()},
+          {"limit", limit.found() ? results::number_or_null(limit.limit()) : ordered_json()},
           {"just_beyond", beyond},
           {"falls", falls_json(limit)},
           {"limits", limits_json(limit)},
@@ -129,10 +125,10 @@ std::string limit_json(const LimitResult& result) {
     interval = {median.limit.low, median.limit.high};
   for (const LimitQuantile& quantile : result.quantiles())
     quantiles.push_back({{"p", quantile.p},
-                         {"value", number_or_null(quantile.limit.value)},
+                         {"value", results::number_or_null(quantile.limit.value)},
                          {"bound", bound_json(quantile)},
-                         {"low", number_or_null(quantile.limit.low)},
-                         {"high", number_or_null(quantile.limit.high)}});
+                         {"low", results::number_or_null(quantile.limit.low)},
+                         {"high", results::number_or_null(quantile.limit.high)}});
   if (!request.since.empty()) since = request.since;
   const ordered_json why =
       request.criterion.why.empty() ? ordered_json() : ordered_json(request.criterion.why);
@@ -157,7 +153,7 @@ std::string limit_json(const LimitResult& result) {
                           {"rest_until_still", request.has_rest},
                           {"complete", result.complete},
                           {"median",
-                           {{"value", number_or_null(median.limit.value)},
+                           {{"value", results::number_or_null(median.limit.value)},
                             {"bound", bound_json(median)},
                             {"confidence", result.confidence},
                             {"interval", interval}}},

@@ -419,8 +419,8 @@ class Refusals(Limit):
             said = self.limit(INCLINE, "--key", "joints.friction", "--from", 45, "--to", 5, "--until", measure, expect=1).stderr
             self.assertIn("no [[spring]] has a yield", said)
             self.assertFalse((self.folder / "out").exists())
-        said = self.limit(INCLINE, "--key", "joints.friction", "--from", 45, "--to", 5, "--until", "closure_vertical_m", expect=1).stderr
-        self.assertIn("this model has no closure_vertical_m: it is null in summary.json", said)
+        said = self.limit(INCLINE, "--key", "joints.friction", "--from", 45, "--to", 5, "--until", "fallen_depth_m", expect=1).stderr
+        self.assertIn("this model has no fallen_depth_m: it is null in summary.json", said)
 
     def test_folders_of_others(self):
         key = ("--from", 45, "--to", 5)

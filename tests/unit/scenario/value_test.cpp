@@ -5,7 +5,7 @@
 namespace keyblock::scenario {
 namespace {
 
-constexpr const char* text = R"(title = "a \"b\""
+constexpr const char* toml = R"(title = "a \"b\""
 [rock]
 young = 1e9
   [rock.inner]
@@ -19,7 +19,7 @@ when = 07:32:00
 )";
 
 TEST(Toml, PositionsAreThoseOfKeysAndValues) {
-  const Value document = parse_toml(text, "f.toml");
+  const Value document = parse_toml(toml, "f.toml");
   const Value* rock = document.find("rock");
   ASSERT_NE(rock, nullptr);
   EXPECT_EQ(rock->where.file, "f.toml");
@@ -43,7 +43,7 @@ TEST(Toml, MembersKeepTheOrderOfTheFile) {
 }
 
 TEST(Toml, NamesOfElements) {
-  const Value document = parse_toml(text, "");
+  const Value document = parse_toml(toml, "");
   const Value& stages = *document.find("stage");
   ASSERT_EQ(stages.items.size(), 2U);
   ASSERT_NE(stages.items[1].name(), nullptr);
@@ -148,7 +148,7 @@ TEST(Toml, OfAnyDepth) {
 }
 
 TEST(Describe, TypeAndValue) {
-  const Value document = parse_toml(text, "");
+  const Value document = parse_toml(toml, "");
   EXPECT_EQ(describe(*document.find("title")), R"(the string "a \"b\"")");
   EXPECT_EQ(describe(*document.find("rock")), "a table");
   const Value& flags = *document.find("rock")->find("inner")->find("flags");
@@ -160,7 +160,7 @@ TEST(Describe, TypeAndValue) {
 }
 
 TEST(ToToml, IsReadBack) {
-  const Value document = parse_toml(text, "");
+  const Value document = parse_toml(toml, "");
   const std::string once = to_toml(document);
   const Value again = parse_toml("v = " + once, "");
   EXPECT_EQ(to_toml(again.items.front()), once);

@@ -9,7 +9,7 @@
 namespace keyblock::study {
 namespace {
 
-constexpr const char* rock = R"(
+constexpr const char* rock_mass = R"(
 title = "Two sets"
 section = { azimuth = 90.0 }
 domain = { x = [-4.0, 4.0], y = [-4.0, 4.0] }
@@ -34,7 +34,7 @@ gap = 0.1
 )";
 
 TEST(CensusStudy, IsTheSameForAnyNumberOfThreads) {
-  const scenario::Scenario scenario = scenario::parse_scenario_text(rock, "rock.toml");
+  const scenario::Scenario scenario = scenario::parse_scenario_text(rock_mass, "rock.toml");
   const CensusStudy one = take_censuses(scenario, 9, 1.5, 1), three = take_censuses(scenario, 9, 1.5, 3);
   EXPECT_EQ(censuses_json(one).dump(), censuses_json(three).dump());
   EXPECT_EQ(census_csv(one.realizations), census_csv(three.realizations));
@@ -48,7 +48,7 @@ TEST(CensusStudy, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(CensusStudy, EndsWhenItIsAskedTo) {
-  const scenario::Scenario scenario = scenario::parse_scenario_text(rock, "rock.toml");
+  const scenario::Scenario scenario = scenario::parse_scenario_text(rock_mass, "rock.toml");
   const std::atomic<bool> stop = true;
   EXPECT_THROW(take_censuses(scenario, 100, 1.5, 1, &stop), RunError);
 }
