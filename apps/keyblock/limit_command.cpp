@@ -60,10 +60,14 @@ void refuse_ends(const study::LimitResult& result) {
       return end("--from", request.from, "that the criterion holds, and that it does not at --to", without,
                  "exchange --from and --to");
     case Status::met_at_both:
-      return end("--from", request.from, "that the criterion holds at both ends", without,
-                 request.criterion.by_standing
-                     ? "move --from away from --to"
-                     : "move --from away from --to, raise --above, or count from a later stage with --since");
+      return end(
+          "--from", request.from, "that the criterion holds at both ends", without,
+          request.key == study::safety_key
+              ? "move --from away from --to; where rock moves before its strength is reduced, as the run at "
+                "--from tells, there is no factor"
+          : request.criterion.by_standing
+              ? "move --from away from --to"
+              : "move --from away from --to, raise --above, or count from a later stage with --since");
     case Status::met_at_none:
       return end("--to", request.to, "that the criterion holds at neither end", with,
                  study::not_met_hint(result));

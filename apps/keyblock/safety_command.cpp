@@ -71,9 +71,11 @@ void add_safety(CLI::App& app) {
                    "Rock has moved that went farther than this, m; default: 0.2 % of the block size")
       ->type_name("X");
   command->add_option("--from", request.from, "A factor at which the rock holds")
+      ->check(CLI::Range(1e-3, 1e3).description(""))
       ->capture_default_str()
       ->type_name("A");
   command->add_option("--to", request.to, "A factor at which it does not")
+      ->check(CLI::Range(1e-3, 1e3).description(""))
       ->capture_default_str()
       ->type_name("B");
   command

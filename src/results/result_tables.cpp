@@ -97,11 +97,11 @@ std::vector<simulation::Frame> FrameTable::read(hid_t file, const simulation::Mo
     frame.step = step.values[f];
     frame.displacement.resize(nv);
     frame.stress.resize(nb);
-    std::copy_n(displacement.values.data() + 2 * nv * f, 2 * nv, frame.displacement.data()->data());
-    std::copy_n(stress.values.data() + 3 * nb * f, 3 * nb, frame.stress.data()->data());
-    if (has_velocity) {
+    if (nv > 0) std::copy_n(&displacement.values[2 * nv * f], 2 * nv, frame.displacement.front().data());
+    if (nb > 0) std::copy_n(&stress.values[3 * nb * f], 3 * nb, frame.stress.front().data());
+    if (has_velocity && nb > 0) {
       frame.velocity.resize(nb);
-      std::copy_n(velocity.values.data() + 2 * nb * f, 2 * nb, frame.velocity.data()->data());
+      std::copy_n(&velocity.values[2 * nb * f], 2 * nb, frame.velocity.front().data());
     }
     const auto orders = std::span(order.values).subspan(nb * f, nb);
     frame.order.assign(orders.begin(), orders.end());

@@ -110,6 +110,8 @@ Vec2 seismic_coefficients(const Scenario& scenario) {
 }
 
 census::Census take_census(const Scenario& scenario, const BlockModel& model, double wanted_factor) {
+  if (!std::isfinite(wanted_factor))
+    refuse(scenario, "--factor", "no number", "the factor of safety that forces are for, a number");
   if (norm(scenario.gravity) == 0.0)
     refuse(scenario, "gravity", "zero", "gravity: a census is of blocks under their weight");
   Census census = census::take_census(input_of(scenario, model, wanted_factor));
@@ -131,6 +133,8 @@ std::vector<std::string> census_notes(const Scenario& scenario) {
   if (!scenario.supports.empty()) left_out.emplace_back("[[support]]");
   if (!scenario.springs.empty()) left_out.emplace_back("[[spring]]");
   if (has_pressure) left_out.emplace_back("the pressure of [[excavation]]");
+  if (!scenario.waters.empty())
+    left_out.emplace_back("[water]: blocks in wet rock have less safety than it says, and need more force");
   if (left_out.empty()) return {};
   return {fmt::format("the census of key blocks leaves out {}", fmt::join(left_out, ", "))};
 }

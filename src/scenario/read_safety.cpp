@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <string>
@@ -13,6 +15,27 @@ using simulation::Stage;
 using simulation::StageKind;
 
 constexpr const char* name_of_reduced = "strength reduced";
+/// s; what falls out of an opening has come down by then, and what it held has begun to.
+constexpr double longest_motion = 3.0;
+
+/// Where nothing may move, the first block that a static stage names tells. Where some rock may, it has to be let go: a static stage holds what moves,
+/// and that props the rock behind it.
+Stage stage_of_reduced_strength(const SafetySpec& safety, const Stage& before) {
+  Stage stage;
+  stage.strength_factor = *safety.strength_factor;
+  stage.strength_of = safety.sets;
+  if (safety.area > 0.0) {
+    stage.kind = StageKind::rest;
+    stage.duration = longest_motion;
+    stage.until_still = true;
+    return stage;
+  }
+  stage.tolerance = before.tolerance;
+  stage.k_h = before.k_h;
+  stage.k_v = before.k_v;
+  stage.max_steps = safety.max_steps;
+  return stage;
+}
 
 void read_keys_of_safety(TableReader& t, SafetySpec& safety, const Scenario& scenario) {
   t.reference(
@@ -41,8 +64,10 @@ void read_keys_of_safety(TableReader& t, SafetySpec& safety, const Scenario& sce
             .usual = &usual::small_way});
   t.number(
       "area", safety.area,
-      {.meaning = "So much rock may move: with it, rock holds until blocks of a larger area move or fall, "
-                  "however far others have moved.",
+      {.meaning = "So much rock may move. Strength is then reduced in motion, in a stage of kind `rest` in "
+                  "the place "
+                  "of a static one, which would hold what moves, and so the rock behind it. Rock holds until "
+                  "blocks of a larger area have fallen or still move.",
        .unit = "m²",
        .at_least = 0.0});
   t.integer("max_steps", safety.max_steps,
@@ -59,16 +84,32 @@ void read_joint_names(TableReader& t, std::string_view key, std::vector<std::str
   for (const int k : indices) names.push_back(all->second[at(k)]);
 }
 
+/// Seismic coefficients are loads of static stages, and with an area strength is reduced in motion.
+static void check_area(TableReader& root, const Scenario& scenario) {
+  const SafetySpec& safety = *scenario.safety;
+  const auto stage = std::ranges::find(scenario.stages, safety.stage, &Stage::name);
+  if (safety.area == 0.0 || stage == scenario.stages.end() || (stage->k_h == 0.0 && stage->k_v == 0.0))
+    return;
+  ReadContext& context = root.context();
+  context.mistakes.add({context.where("safety.area"), "safety.area",
+                        fmt::format("an area, with k_h = {} and k_v = {} of the stage '{}'", stage->k_h,
+                                    stage->k_v, stage->name),
+                        "0: with an area strength is reduced in motion, where no seismic coefficient acts",
+                        ""});
+}
+
 void read_safety(TableReader& root, Scenario& scenario) {
   root.table("safety",
              {.meaning = "Factor of safety: strength of joints that is reduced from an equilibrium on "
                          "(`keyblock safety`)."},
              [&](TableReader& t) { read_keys_of_safety(t, scenario.safety.emplace(), scenario); });
-  if (!scenario.safety || !scenario.safety->stage.empty()) return;
+  if (!scenario.safety) return;
+  if (!scenario.safety->stage.empty()) return check_area(root, scenario);
   const auto last = std::find_if(scenario.stages.rbegin(), scenario.stages.rend(),
                                  [](const Stage& stage) { return stage.kind == StageKind::settle; });
   if (last != scenario.stages.rend()) {
     scenario.safety->stage = last->name;
+    check_area(root, scenario);
   } else if (!root.documenting() && root.context().mistakes.empty()) {
     ReadContext& context = root.context();
     context.mistakes.add({context.where("safety"), "safety", "no stage of kind \"settle\"",
@@ -82,15 +123,9 @@ void reduce_strength(Scenario& scenario) {
   std::vector<Stage>& stages = scenario.stages;
   const auto last = std::ranges::find(stages, safety.stage, &Stage::name);
   if (last == stages.end()) return;
-  Stage reduced;
+  Stage reduced = stage_of_reduced_strength(safety, *last);
   reduced.name = name_of_reduced;
   while (std::ranges::find(stages, reduced.name, &Stage::name) != stages.end()) reduced.name += " again";
-  reduced.tolerance = last->tolerance;
-  reduced.k_h = last->k_h;
-  reduced.k_v = last->k_v;
-  reduced.max_steps = safety.max_steps;
-  reduced.strength_factor = *safety.strength_factor;
-  reduced.strength_of = safety.sets;
   scenario.left_out.assign(std::next(last), stages.end());
   stages.erase(std::next(last), stages.end());
   stages.push_back(std::move(reduced));

@@ -213,6 +213,15 @@ std::vector<FallenBlock> DamageGauge::fallen(std::span<const BlockStatus> status
   return fallen;
 }
 
+void DamageGauge::measure_way(std::size_t b, const dynamics::State& state, Damage& damage) const {
+  damage.displacement_max = std::max(damage.displacement_max, norm(displacement(b, state)));
+  if (!reference_.of_stage.empty())
+    damage.stage_displacement =
+        std::max(damage.stage_displacement, norm(place_on_base(b, state) - reference_.of_stage[b]));
+  const double turned = std::remainder(turn_of(model_, b) - reference_.turn[b], 2.0 * std::numbers::pi);
+  damage.rotation_max = std::max(damage.rotation_max, std::abs(turned) * 180.0 / std::numbers::pi);
+}
+
 Damage DamageGauge::measure(const dynamics::State& state) {
   Damage damage;
   if (!started()) return damage;
@@ -220,14 +229,9 @@ Damage DamageGauge::measure(const dynamics::State& state) {
   double inside = 0.0;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
-    damage.displacement_max = std::max(damage.displacement_max, norm(displacement(b, state)));
-    if (!reference_.of_stage.empty())
-      damage.stage_displacement =
-          std::max(damage.stage_displacement, norm(place_on_base(b, state) - reference_.of_stage[b]));
+    measure_way(b, state, damage);
     const bool goes = moving_[b] != 0 || speed(b, state) > setup_.damage.loosened_distance;
     if (goes || status_now[b] == BlockStatus::fallen) damage.moving_area += model_.blocks[b].area;
-    const double turned = std::remainder(turn_of(model_, b) - reference_.turn[b], 2.0 * std::numbers::pi);
-    damage.rotation_max = std::max(damage.rotation_max, std::abs(turned) * 180.0 / std::numbers::pi);
     if (status_now[b] == BlockStatus::loosened) damage.loosened_area += model_.blocks[b].area;
     if (status_now[b] != BlockStatus::in_place) inside += openings_.area_inside(polygon_on_base(b, state));
   }

@@ -81,6 +81,8 @@ class DamageGauge {
   /// m/s, of a centroid against the base.
   [[nodiscard]] double speed(std::size_t block, const dynamics::State& state) const;
   void find_movers(const dynamics::State& state, StageRecord& record) const;
+  /// How far a block has gone and turned.
+  void measure_way(std::size_t block, const dynamics::State& state, Damage& damage) const;
   /// m; 0: nothing falls.
   [[nodiscard]] double fall_distance(const dynamics::Block& block) const;
   /// m, of a centroid less the displacement of the base.

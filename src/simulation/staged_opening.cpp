@@ -26,6 +26,14 @@ double pressure_in(const SupportPressure& pressure, int stage) {
   return now;
 }
 
+/// What the water between the rock of an excavation and its wall does goes with the rock, too.
+void keep_water(const dynamics::Model& model, int excavation, dynamics::State& state) {
+  const dynamics::WaterOfModel water = dynamics::water_of(model, state);
+  if (water.water == nullptr) return;
+  for (const auto& [vertex, force] : water.water->wall_forces(model, state, water.memory, excavation))
+    state.walls.forces.push_back({force, vertex, excavation});
+}
+
 }  // namespace
 
 void StagedOpening::start(dynamics::State& state) const {
@@ -60,12 +68,7 @@ void StagedOpening::keep_forces(const Stage& stage, dynamics::State& state,
       if (forces[v] != Vec2{} && model_.moves(b) && goes[b] == 0)
         state.walls.forces.push_back({forces[v], static_cast<int>(v), e});
     }
-    // What the water between rock and wall does goes with the rock, too.
-    const dynamics::WaterOfModel water = dynamics::water_of(model_, state);
-    if (water.water == nullptr) continue;
-    for (const auto& [vertex, force] : water.water->wall_forces(model_, state, water.memory, e)) {
-      if (goes[at(model_.surface.block[at(vertex)])] == 0) state.walls.forces.push_back({force, vertex, e});
-    }
+    keep_water(model_, e, state);
   }
   std::erase_if(state.walls.forces, [&](const dynamics::WallForce& force) {
     return goes[at(model_.surface.block[at(force.vertex)])] != 0;

@@ -36,9 +36,8 @@ bool is_gone(BlockStatus status) {
 }
 
 Vec2 middle_of(const MapGrid& grid, std::size_t cell) {
-  const auto columns = at(grid.columns);
-  return grid.corner + grid.cell * Vec2{static_cast<double>(cell % columns) + 0.5,
-                                        static_cast<double>(cell / columns) + 0.5};
+  const std::size_t row = cell / at(grid.columns), column = cell % at(grid.columns);
+  return grid.corner + grid.cell * Vec2{static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5};
 }
 
 /// What cells hold, and how it is drawn.

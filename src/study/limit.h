@@ -25,6 +25,7 @@ struct LimitRequest {
   int scan = 0;               ///< parts of the way that are looked at before the bisection; 0: by the key
   bool finds_moving = false;  ///< from where on blocks move before the criterion holds is looked for, too
   bool has_rest = false;      ///< a rest until all is still follows the last stage (needs_rest)
+  std::string of = {};        ///< of the factor of safety: of which joints it is; empty: of all
 };
 
 /// Parts of the way of a key that need not be monotone: the scale of a motion, and what a motion is made of. 1 for others.

@@ -12,6 +12,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "record/damage_fields.h"
+#include "scenario/build.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/key_reference.h"
@@ -319,9 +320,23 @@ LimitCriterion criterion_of_safety(const scenario::SafetySpec& safety) {
   LimitCriterion criterion = has_area ? limit_criterion("moving_area_m2", safety.area, 0.0)
                                       : limit_criterion("gives_way", safety.moved, 0.0);
   criterion.why =
-      has_area ? "so much rock may move by [safety] area"
+      has_area ? "so much rock may move by [safety] area, in motion, after strength was reduced"
                : "rock has given way that has moved since strength was reduced, or that does not stand";
   return criterion;
+}
+
+/// Whose strength is reduced, from when on, and what of the scenario does not come.
+std::string what_is_reduced(const scenario::Scenario& scenario) {
+  const scenario::SafetySpec& safety = scenario.safety.value();
+  std::string text = fmt::format(
+      "strength of {} is reduced from the end of \"{}\" on",
+      safety.sets.empty() ? "all joints" : scenario::list_words(safety.sets, " and "), safety.stage);
+  std::vector<std::string> names;
+  for (const simulation::Stage& stage : scenario.left_out) names.push_back(stage.name);
+  if (!names.empty())
+    text += fmt::format("; not run, with what {}: {}", names.size() == 1 ? "it does" : "they do",
+                        scenario::list_words(names, " and "));
+  return text;
 }
 
 /// That which is asked for, or else that of the key or of the model.
@@ -350,6 +365,10 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
   const scenario::Scenario read = scenario_at(plan, request, request.from);
   request.criterion = chosen_criterion(read, request.key, until, above);
   check_measure(request, read);
+  if (request.key == safety_key) {
+    request.of = scenario::list_words(read.safety.value().sets, " and ");
+    request.criterion.why += (request.criterion.why.empty() ? "" : "\n") + what_is_reduced(read);
+  }
   request.has_rest = needs_rest(request.criterion, read);
   request.finds_moving =
       !request.criterion.by_standing && std::string_view(limit_default(read).criterion) != "fallen";
@@ -361,6 +380,10 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
                     request.realizations));
   check_since(request, read.stages);
   for (std::string& warning : warnings_of_ends(plan, request)) {
+    if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(std::move(warning));
+  }
+  // What shows only when blocks are cut and built.
+  for (std::string& warning : scenario::build_setup(read, 0).warnings) {
     if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(std::move(warning));
   }
   plan.warnings = std::move(warnings);

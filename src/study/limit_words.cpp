@@ -46,7 +46,9 @@ constexpr Subject subjects[] = {
     {"stage._.k_v", "the vertical seismic coefficient at the limit"},
 };
 
-std::string subject_of(const std::string& key) {
+std::string subject_of(const LimitRequest& request) {
+  const std::string& key = request.key;
+  if (!request.of.empty()) return "the factor of safety of " + request.of;
   const auto segments = scenario::parse_key_path(key);
   for (const Subject& subject : subjects) {
     const auto pattern = scenario::parse_key_path(subject.key);
@@ -168,7 +170,7 @@ std::string both_ends_text(const LimitResult& result, const RealizationLimit& li
   std::string ends = falls_at_once ? " and " + from("falls", beyond) : ", " + from("moves", beyond);
   if (!falls_at_once && limit.falls) ends += " and " + from("falls", *limit.falls);
   if (!limit.falls) ends += fmt::format(", and falls at no value up to {}", words.end(result.request.to));
-  return fmt::format("{} is {}{}: the rock holds to {}{}.", capital(subject_of(result.request.key)),
+  return fmt::format("{} is {}{}: the rock holds to {}{}.", capital(subject_of(result.request)),
                      words.middle(), pga_text(limit), words.end(bracket.not_met), ends);
 }
 
@@ -181,7 +183,7 @@ std::string found_text(const LimitResult& result, const RealizationLimit& limit)
     return trial == nullptr ? std::string()
                             : fmt::format("at {} {}", words.end(value), outcome_text(result.request, *trial));
   };
-  return fmt::format("{} is {}{}: {}, {}.", capital(subject_of(result.request.key)), words.middle(),
+  return fmt::format("{} is {}{}: {}, {}.", capital(subject_of(result.request)), words.middle(),
                      pga_text(limit), at(bracket.not_met), at(bracket.met));
 }
 
@@ -283,7 +285,7 @@ std::string answer_text(const LimitResult& result) {
   };
   const bool is_bound = median.at_least || median.at_most;
   return fmt::format("{} is {}{} in the median of {} realizations ({:.0f} % interval {} … {}).",
-                     capital(subject_of(result.request.key)),
+                     capital(subject_of(result.request)),
                      is_bound ? (median.at_least ? "at least " : "at most ") : "", text(median.limit.value),
                      result.realizations.size(), 100.0 * result.confidence, text(median.limit.low),
                      text(median.limit.high));

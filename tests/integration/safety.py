@@ -68,6 +68,8 @@ class KnownFactors(Safety):
             self.safety(*slope, *sets, out=f"s{number}")
             self.check(1.8364, out=f"s{number}")
         self.assertEqual(self.found("s1")["overrides"][-1], 'safety.sets=["bedding"]')
+        self.assertIn("The factor of safety of \"bedding\" is 1.8", self.found("s1")["answer"])
+        self.assertIn('strength of "bedding" is reduced from the end of "excavated" on', self.found("s1")["why"])
 
     def test_one_set_alone(self):
         """The crack carries nothing: its strength is of no account."""
@@ -102,6 +104,7 @@ motion = "shaking"
         said = self.safety(self.slope(self.SHAKEN), "--workers", 2)
         self.check(math.tan(math.radians(40)) / math.tan(math.radians(30)))
         self.assertNotIn("no stage uses it", said.stderr)
+        self.assertIn('from the end of "excavated" on; not run, with what it does: "shaken"', said.stdout)
         (limit,) = self.found()["realizations"]
         self.keyblock("run", "slope.toml", "--set", "safety.strength_factor=1.2", "-o", "run")
         self.assertEqual([stage["name"] for stage in self.summary("run")["stages"]], ["excavated", "strength reduced"])
@@ -141,9 +144,11 @@ motion = "shaking"
         for cell in cells:
             self.assertTrue(cell["holds_to"] == "" or float(cell["holds_to"]) in tried, cell)
             self.assertLess(math.hypot(float(cell["x_m"]), float(cell["y_m"])), 12.0)
+        run = self.summary(f"out/{limit['just_beyond']}")
+        self.assertEqual(run["stages"][-1]["kind"], "rest", "a static stage would hold what moves, and prop the rock behind it")
+        self.assertGreater(run["stages"][-1]["damage"]["fallen_area_m2"], 0.4)
         page = (self.folder / "out/report.html").read_text()
         self.assertIn("Up to which value rock stays in place", page)
-        self.assertIn("Arrows: how blocks move", page)
 
     def test_realizations_and_workers(self):
         self.write("gallery.toml", GALLERY)
@@ -164,6 +169,8 @@ class Mistakes(Safety):
         self.refused("excavated", "--stage", "excavation")
         self.refused("safety.area", "--area", -1)
         self.refused("safety.moved", "--moved", 0)
+        self.refused("in motion, where no seismic coefficient acts", "--area", 1, "--set", "stage.excavated.k_h=-0.1")
+        self.refused("not in range 0.001000 to 1000", "--to", 1e9)
         self.refused("another value than --from", "--from", 1, "--to", 1)
         self.assertFalse((self.folder / "out").exists())
 
