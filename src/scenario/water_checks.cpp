@@ -22,7 +22,11 @@ class WaterChecks {
       : scenario_(scenario), warnings_(warnings), box_(box_of_model(scenario)) {}
 
   void check() {
-    for (const WaterSpec& spec : scenario_.waters) check_height(spec);
+    for (std::size_t k = 0; k < scenario_.waters.size(); ++k) {
+      check_height(scenario_.waters[k]);
+      check_used(static_cast<int>(k));
+      check_holders(scenario_.waters[k]);
+    }
     check_gravity();
     for (const ExcavationSpec& spec : scenario_.excavations) check_drainage(spec);
     for (const JointSetSpec& spec : scenario_.joint_sets) check_dry(spec.path, spec.joints);
@@ -53,6 +57,31 @@ class WaterChecks {
     } else if (scenario_.si_units && head > most_head) {
       warn("{}{}: stands {:.4g} m above the base of the model; heights are in m", spec.path, place, head);
     }
+  }
+
+  // The first one acts until a stage says otherwise.
+  void check_used(int k) {
+    const auto uses = [&](const simulation::Stage& stage) { return stage.water == k; };
+    const bool is_first = k == 0 && (scenario_.stages.empty() || !scenario_.stages.front().water);
+    if (is_first || std::ranges::any_of(scenario_.stages, uses) ||
+        std::ranges::any_of(scenario_.left_out, uses))
+      return;
+    warn("{}: no stage uses it", scenario_.waters[static_cast<std::size_t>(k)].path);
+  }
+
+  // Blocks that are given one by one hold it as well.
+  void check_holders(const WaterSpec& spec) {
+    if (!scenario_.blocks.empty()) return;
+    std::vector<bool> is_dry;
+    for (const JointSetSpec& set : scenario_.joint_sets) is_dry.push_back(set.joints.dry);
+    for (const TraceMapSpec& map : scenario_.trace_maps) is_dry.push_back(map.joints.dry);
+    for (std::size_t k = 0; k < is_dry.size(); ++k) {
+      if (is_dry[k] && spec.sets && (*spec.sets)[k])
+        warn("{}.sets: names joints that are dry = true, which holds", spec.path);
+      is_dry[k] = is_dry[k] || (spec.sets && !(*spec.sets)[k]);
+    }
+    if (!is_dry.empty() && std::ranges::find(is_dry, false) == is_dry.end())
+      warn("{}: all joint sets and trace maps are dry; no joint is wet", spec.path);
   }
 
   // Water at rest is level, and level is normal to gravity.

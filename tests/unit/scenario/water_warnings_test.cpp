@@ -48,6 +48,22 @@ TEST(WaterWarnings, OfKeysWithoutWater) {
               Contains(HasSubstr(".dry: there is no [water]")));
 }
 
+// The first one acts until a stage says otherwise.
+TEST(WaterWarnings, OfWaterThatNoStageUses) {
+  const std::string two = "water=[{name='a', head=2}, {name='b', head=1}]";
+  EXPECT_THAT(warnings_of(two_blocks, {two}), UnorderedElementsAre(HasSubstr("no stage uses it")));
+  EXPECT_THAT(warnings_of(two_blocks, {two, "stage.quiet.water='b'"}),
+              UnorderedElementsAre(HasSubstr("no stage uses it")));
+}
+
+TEST(WaterWarnings, OfJointsThatAreAllDry) {
+  EXPECT_THAT(warnings_of(runnable_domain, {"water={head=8}", "joint_set.0.dry=true"}),
+              Contains(HasSubstr("water: all joint sets and trace maps are dry; no joint is wet")));
+  EXPECT_THAT(warnings_of(runnable_domain, {"water={head=8, sets=['bedding']}", "joint_set.0.dry=true"}),
+              Contains(HasSubstr("water.sets: names joints that are dry = true, which holds")));
+  EXPECT_THAT(warnings_of(runnable_domain, {"water={head=8}"}), Not(Contains(HasSubstr("dry"))));
+}
+
 TEST(Water, IsAmongTheFacts) {
   const Scenario scenario = parse(two_blocks, {"water={table=[[0, 2], [4, 1.5]]}"});
   EXPECT_THAT(ground_facts(scenario), Contains(GroundFact{"water", "table from 1.5 to 2 m, γw 9.81 kN/m³"}));
