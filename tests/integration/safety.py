@@ -131,7 +131,7 @@ motion = "shaking"
 
     def test_a_tunnel_is_asked_for_an_area(self):
         tunnel = ROOT / "examples/02-tunnel-in-situ.toml"
-        self.safety(tunnel, "--area", 0.5, "--sweep", 4, "--tolerance", 0.02, "--workers", 2)
+        self.safety(tunnel, "--area", 0.5, "--sweep", 2, "--tolerance", 0.05, "--workers", 2)
         found = self.found()
         self.assertEqual(found["until"], "moving_area_m2")
         (limit,) = found["realizations"]
