@@ -62,9 +62,10 @@ void add_safety(CLI::App& app) {
       ->type_name("STAGE");
   command
       ->add_option("--sets", arguments->sets,
-                   "Joint sets, trace maps, or joints, whose strength is reduced; default: all")
+                   "Joint sets, trace maps, or joints, whose strength is reduced, with commas between them; "
+                   "default: all")
       ->delimiter(',')
-      ->type_name("NAME,…");
+      ->type_name("NAME");
   command->add_option("--area", arguments->area, "So much rock may move, m2; default: none")->type_name("A");
   command
       ->add_option("--moved", arguments->moved,
@@ -95,11 +96,11 @@ void add_safety(CLI::App& app) {
       "--resume", arguments->limit.resume,
       "Go on with the runs in DIR; --from, --to, --tolerance, --sweep and --realizations may change");
   command->footer(
-      "keyblock limit over safety.strength_factor: every trial ends with a static stage in which "
-      "tan(friction), "
-      "cohesion and tension are divided by the factor. The answer tells up to where the rock holds, from "
-      "where on it "
-      "moves, and from where on it falls.\n\n"
+      "keyblock limit over safety.strength_factor: every trial ends with a stage in which tan(friction), "
+      "cohesion and "
+      "tension are divided by the factor: a static one, or with an area one in motion. The answer tells up "
+      "to where "
+      "the rock holds, from where on it moves, and from where on it falls.\n\n"
       "Examples:\n"
       "  keyblock safety slope.toml -o out/safety\n"
       "  keyblock safety slope.toml --sets bedding --realizations 40 -o out/bedding\n"

@@ -52,16 +52,19 @@ void read_keys_of_safety(TableReader& t, SafetySpec& safety, const Scenario& sce
   t.number(
       "strength_factor", safety.strength_factor,
       {.meaning = "What tan(friction), cohesion and tension, residual strength too, are divided by in a last "
-                  "static stage. `keyblock safety` looks for the value at which rock moves.",
+                  "stage. `keyblock safety` looks for the value at which rock moves.",
        .above = 0.0,
        .fallback = "the run is as without [safety]",
        .usual = &usual::strength_factor});
-  t.number("moved", safety.moved,
-           {.meaning = "Rock has moved that went farther than this in the stage of reduced strength.",
-            .unit = "m",
-            .above = 0.0,
-            .fallback = "0.2 % of the block size",
-            .usual = &usual::small_way});
+  t.number(
+      "moved", safety.moved,
+      {.meaning =
+           "Rock has moved that went farther than this in the stage of reduced strength. With `area` this is "
+           "not asked.",
+       .unit = "m",
+       .above = 0.0,
+       .fallback = "0.2 % of the block size",
+       .usual = &usual::small_way});
   t.number(
       "area", safety.area,
       {.meaning = "So much rock may move. Strength is then reduced in motion, in a stage of kind `rest` in "
@@ -117,7 +120,7 @@ void read_safety(TableReader& root, Scenario& scenario) {
   }
 }
 
-void reduce_strength(Scenario& scenario) {
+void end_with_reduced_strength(Scenario& scenario) {
   if (!scenario.safety || !scenario.safety->strength_factor) return;
   const SafetySpec& safety = *scenario.safety;
   std::vector<Stage>& stages = scenario.stages;

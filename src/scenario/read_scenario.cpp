@@ -256,7 +256,7 @@ void read_scenario(TableReader& root, Scenario& scenario) {
   read_safety(root, scenario);
   read_study(root, scenario);
   Consistency(root, scenario).check();
-  if (!root.documenting()) reduce_strength(scenario);
+  if (!root.documenting()) end_with_reduced_strength(scenario);
 }
 
 }  // namespace keyblock::scenario

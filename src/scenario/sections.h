@@ -48,7 +48,7 @@ void read_safety(TableReader& root, Scenario& scenario);
 void read_joint_names(TableReader& t, std::string_view key, std::vector<std::string>& names,
                       const Rule& rule);
 /// What [safety] makes of the stages, once all is read.
-void reduce_strength(Scenario& scenario);
+void end_with_reduced_strength(Scenario& scenario);
 /// [study], after all that its keys name.
 void read_study(TableReader& root, Scenario& scenario);
 

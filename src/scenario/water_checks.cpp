@@ -16,6 +16,14 @@ constexpr double most_head = 2000.0;
 /// Of a water table against the normal of gravity, that rounding leaves.
 constexpr double least_slope = 1e-6;
 
+/// Of all joint sets, then of all trace maps: they hold no water, whichever there is.
+std::vector<bool> dry_by_themselves(const Scenario& scenario) {
+  std::vector<bool> is_dry;
+  for (const JointSetSpec& spec : scenario.joint_sets) is_dry.push_back(spec.joints.dry);
+  for (const TraceMapSpec& spec : scenario.trace_maps) is_dry.push_back(spec.joints.dry);
+  return is_dry;
+}
+
 class WaterChecks {
  public:
   WaterChecks(const Scenario& scenario, std::vector<std::string>& warnings)
@@ -72,9 +80,7 @@ class WaterChecks {
   // Blocks that are given one by one hold it as well.
   void check_holders(const WaterSpec& spec) {
     if (!scenario_.blocks.empty()) return;
-    std::vector<bool> is_dry;
-    for (const JointSetSpec& set : scenario_.joint_sets) is_dry.push_back(set.joints.dry);
-    for (const TraceMapSpec& map : scenario_.trace_maps) is_dry.push_back(map.joints.dry);
+    std::vector<bool> is_dry = dry_by_themselves(scenario_);
     for (std::size_t k = 0; k < is_dry.size(); ++k) {
       if (is_dry[k] && spec.sets && (*spec.sets)[k])
         warn("{}.sets: names joints that are dry = true, which holds", spec.path);
@@ -128,9 +134,7 @@ void add_water_warnings(const Scenario& scenario, std::vector<std::string>& warn
 }
 
 std::vector<simulation::Water> waters_of(const Scenario& scenario, Vec2 origin) {
-  std::vector<bool> is_dry;
-  for (const JointSetSpec& spec : scenario.joint_sets) is_dry.push_back(spec.joints.dry);
-  for (const TraceMapSpec& spec : scenario.trace_maps) is_dry.push_back(spec.joints.dry);
+  const std::vector<bool> is_dry = dry_by_themselves(scenario);
   std::vector<simulation::Water> waters;
   for (const WaterSpec& spec : scenario.waters) {
     std::vector<Vec2> table = spec.table;

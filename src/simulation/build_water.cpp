@@ -7,6 +7,7 @@
 #include "core/index.h"
 #include "coupling/joint_water.h"
 #include "simulation/build_boundary.h"
+#include "simulation/joint_laws.h"
 #include "simulation/wall_faces.h"
 
 namespace keyblock::simulation {
@@ -46,13 +47,12 @@ class CutSides {
 
 /// Per edge of the surface: a water never reaches it.
 std::vector<std::uint8_t> dry_edges(const RunSetup& setup, const Model& model, const Water& water) {
-  constexpr int first_set = 3;  // joint_law()
   const CutSides cut(setup);
   std::vector<std::uint8_t> dry;
   for (std::size_t v = 0; v < model.reference.size(); ++v) {
     const int law = model.surface.joint[v];
-    const bool is_dry = law >= first_set
-                            ? water.dry_joints[at(law - first_set)]
+    const bool is_dry = law >= first_set_law
+                            ? water.dry_joints[at(law - first_set_law)]
                             : cut.has(model.reference[v], model.reference[at(model.surface.next[v])]);
     dry.push_back(is_dry ? 1 : 0);
   }

@@ -9,7 +9,7 @@
 namespace keyblock::simulation {
 namespace {
 
-constexpr std::size_t of_joints = 0, of_frame = 1, of_outlines = 2, first_set = 3;
+constexpr std::size_t of_joints = 0, of_frame = 1, of_outlines = 2;
 
 double coefficient_of(double friction_angle) {
   return std::tan(friction_angle * std::numbers::pi / 180.0);
@@ -39,9 +39,9 @@ int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
     case cutting::EdgeKind::excavation:
       return static_cast<int>(of_outlines);
     case cutting::EdgeKind::joint_set:
-      return static_cast<int>(first_set) + label.index;
+      return first_set_law + label.index;
     case cutting::EdgeKind::trace_map:
-      return static_cast<int>(first_set) + sets + std::min<int>(label.index, maps - 1);
+      return first_set_law + sets + std::min<int>(label.index, maps - 1);
   }
   return static_cast<int>(of_joints);
 }
@@ -49,7 +49,7 @@ int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
 std::optional<std::size_t> find_law(const RunSetup& setup, std::string_view name) {
   if (name == "joints") return of_joints;
   if (name == "frame") return of_frame;
-  std::size_t number = first_set;
+  std::size_t number = first_set_law;
   for (const auto* names : {&setup.joint_set_names, &setup.trace_map_names}) {
     const auto found = std::ranges::find(*names, name);
     if (found != names->end()) return number + static_cast<std::size_t>(found - names->begin());

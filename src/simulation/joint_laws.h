@@ -13,6 +13,9 @@
 /// maps.
 namespace keyblock::simulation {
 
+/// Number of the law of the first joint set; those of the others follow, then those of trace maps.
+inline constexpr int first_set_law = 3;
+
 /// Number of the law of an edge (Surface::joint).
 int joint_law(const RunSetup& setup, cutting::EdgeLabel label);
 /// Number of the law of a joint set, a trace map, `joints` or `frame`; none: there is no such name.
