@@ -18,6 +18,9 @@ namespace keyblock::study {
 Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitRequest& request,
                 const std::string& until, std::optional<double> above);
 
+/// A value of the key as TOML, with a point or an exponent: what must be an integer is no key for a bisection.
+std::string limit_value_text(double value);
+
 struct LimitOptions {
   WorkerOptions workers;
   bool resume = false;
