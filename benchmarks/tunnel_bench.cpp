@@ -7,8 +7,8 @@
 /// The tunnel of the first example.
 namespace {
 
+using keyblock::record::Stage;
 using keyblock::simulation::RunSetup;
-using keyblock::simulation::Stage;
 
 keyblock::scenario::Scenario tunnel() {
   return keyblock::scenario::parse_scenario(KEYBLOCK_SOURCE_DIR "/examples/01-tunnel.toml");
@@ -26,12 +26,12 @@ void steps_at_rest(benchmark::State& state) {
   for (auto& block : setup.properties) block.order = static_cast<int>(state.range(1));
   Stage stage;
   stage.name = "rest";
-  stage.kind = keyblock::simulation::StageKind::rest;
+  stage.kind = keyblock::record::StageKind::rest;
   stage.duration = 200 * setup.time_step;
   setup.stages = {stage};
   keyblock::simulation::RunOptions options;
   options.threads = static_cast<int>(state.range(0));
-  keyblock::simulation::RunObserver nobody;
+  keyblock::record::RunObserver nobody;
   double wall_time = 0.0;
   long steps = 0;
   for (auto _ : state) {

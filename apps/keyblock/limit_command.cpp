@@ -29,9 +29,9 @@ void tell_trial(const study::LimitRequest& request, const study::RealizationLimi
                 const study::LimitTrial& trial) {
   const std::string which =
       request.realizations > 1 ? fmt::format("realization {}, ", limit.realization) : "";
-  std::string measured = simulation::standing_name(trial.standing);
+  std::string measured = record::standing_name(trial.standing);
   if (request.criterion.by_measure) {
-    const std::string also = trial.standing == simulation::Standing::stands ? "" : ", " + measured;
+    const std::string also = trial.standing == record::Standing::stands ? "" : ", " + measured;
     measured = fmt::format("{} {:.5g}{}", request.criterion.measure, trial.measure, also);
   }
   std::cout << fmt::format("{}{} = {:.8g}: {}, {}\n", which, request.key, trial.value, measured,

@@ -19,9 +19,9 @@
 namespace keyblock::app {
 namespace {
 
-using simulation::RunRecord;
-using simulation::StageKind;
-using simulation::StageRecord;
+using record::RunRecord;
+using record::StageKind;
+using record::StageRecord;
 
 constexpr std::size_t table_columns = 9;
 using Row = std::array<std::string, table_columns>;
@@ -34,7 +34,7 @@ const Row heading{"stage",     "steps",       "time s",   "PGA m/s2", "fallen",
                   "fallen m2", "loosened m2", "filled %", "slip mm"};
 
 Row row(const StageRecord& stage) {
-  const simulation::Damage& d = stage.damage;
+  const record::Damage& d = stage.damage;
   const bool dynamic = stage.stage.kind != StageKind::settle;
   return {one_line(stage.stage.name, 20, true),
           fmt::format("{}", stage.steps),
@@ -65,7 +65,7 @@ std::string aligned(const std::vector<Row>& rows) {
 }
 
 std::string moving_text(const StageRecord& stage) {
-  std::string text = simulation::verdict_text(stage) + " (share of the weight that is carried:";
+  std::string text = record::verdict_text(stage) + " (share of the weight that is carried:";
   constexpr std::size_t shown = 6;
   for (std::size_t k = 0; k < std::min(shown, stage.moving.size()); ++k) {
     text += fmt::format("{} block {} {:.0f} %", k == 0 ? "" : ",", stage.moving[k].block,
@@ -80,13 +80,13 @@ std::string fallen_text(int blocks, double area) {
 
 /// What came down before the shaking and what the shaking added; empty where nothing can come down, or nothing was shaken.
 std::string split_at_shaking(const RunRecord& run) {
-  std::vector<simulation::Stage> stages;
+  std::vector<record::Stage> stages;
   for (const StageRecord& stage : run.stages) stages.push_back(stage.stage);
-  const auto last = simulation::last_before_shaking(stages);
+  const auto last = record::last_before_shaking(stages);
   if (!last) return "";
-  const simulation::Damage &before = run.stages[*last].damage, &end = run.stages.back().damage;
-  const bool open = std::any_of(stages.begin(), stages.end(),
-                                [](const simulation::Stage& s) { return !s.excavate.empty(); });
+  const record::Damage &before = run.stages[*last].damage, &end = run.stages.back().damage;
+  const bool open =
+      std::any_of(stages.begin(), stages.end(), [](const record::Stage& s) { return !s.excavate.empty(); });
   if (!open && end.fallen_blocks == 0) return "";
   return fmt::format(
       "fallen before the shaking: {}; the shaking added {}\n",
@@ -95,20 +95,20 @@ std::string split_at_shaking(const RunRecord& run) {
 }
 
 std::string standing_text(const StageRecord& stage) {
-  using simulation::Standing;
+  using record::Standing;
   switch (*stage.standing) {
     case Standing::stands:
       return "it stands";
     case Standing::moves:
       return stage.stage.kind == StageKind::settle
-                 ? fmt::format("it moves ({})", simulation::verdict_text(stage))
+                 ? fmt::format("it moves ({})", record::verdict_text(stage))
                  : fmt::format("it moves, at up to {:.2g} m/s", stage.largest_speed);
     case Standing::rocks:
       return fmt::format(
           "it still rocks, at up to {:.2g} m/s; a stage of kind \"rest\" tells what comes of it",
           stage.largest_speed);
     case Standing::unstable:
-      return fmt::format("it does not stand ({})", simulation::verdict_text(stage));
+      return fmt::format("it does not stand ({})", record::verdict_text(stage));
     case Standing::collapsed:
     case Standing::fallen:
       return fmt::format("it has collapsed: {} {} fallen", stage.damage.fallen_blocks,
@@ -120,7 +120,7 @@ std::string standing_text(const StageRecord& stage) {
 }
 
 /// Where the fallen rock came from.
-std::string depths_text(const simulation::Damage& damage) {
+std::string depths_text(const record::Damage& damage) {
   const std::pair<const char*, double> parts[] = {{"crown", damage.fallen_depth_crown},
                                                   {"left wall", damage.fallen_depth_left},
                                                   {"right wall", damage.fallen_depth_right},
@@ -137,7 +137,7 @@ std::string result_text(const RunRecord& run, std::string_view scenario,
                         std::span<const std::string> openings) {
   if (run.stages.empty()) return {};
   const StageRecord& last = run.stages.back();
-  const simulation::Damage& damage = last.damage;
+  const record::Damage& damage = last.damage;
   if (last.standing)
     return fmt::format(
         "at the end of \"{}\" {}; the middle of a block has moved by up to {:.4g} m, "
@@ -150,7 +150,7 @@ std::string result_text(const RunRecord& run, std::string_view scenario,
       "behind the {}\n",
       1e-3 * damage.fallen_weight, 1e-3 * damage.largest_fallen_weight, 1e-3 * damage.largest_block_pressure,
       depths_text(damage));
-  const std::string search = simulation::pressure_search(scenario, openings, damage);
+  const std::string search = record::pressure_search(scenario, openings, damage);
   if (!search.empty()) text += fmt::format("the support pressure that holds it: {}\n", search);
   return text;
 }
@@ -184,17 +184,17 @@ std::vector<std::string> warnings(const RunRecord& run) {
           fmt::format("stage \"{}\" ended before equilibrium: worst residual {:.1e} of a block's weight",
                       stage.stage.name, stage.worst_residual_ratio));
     } else if (stage.stage.kind == StageKind::settle &&
-               (simulation::verdict_of(stage) == simulation::Verdict::equilibrium_after_moving ||
-                simulation::verdict_of(stage) == simulation::Verdict::unstable)) {
-      texts.push_back(fmt::format("stage \"{}\" is {}", stage.stage.name, simulation::verdict_text(stage)));
+               (record::verdict_of(stage) == record::Verdict::equilibrium_after_moving ||
+                record::verdict_of(stage) == record::Verdict::unstable)) {
+      texts.push_back(fmt::format("stage \"{}\" is {}", stage.stage.name, record::verdict_text(stage)));
     }
   }
   for (const std::string& text : rests_that_were_too_short(run)) texts.push_back(text);
   if (run.open_close.unconverged_steps > 0) {
     texts.push_back(fmt::format("{} steps did not converge", run.open_close.unconverged_steps));
   }
-  for (const std::string& warning : simulation::energy_warnings(run)) texts.push_back(warning);
-  const simulation::OverlapRecord& overlap = run.max_overlap;
+  for (const std::string& warning : record::energy_warnings(run)) texts.push_back(warning);
+  const record::OverlapRecord& overlap = run.max_overlap;
   if (overlap.depth >= largest_overlap && overlap.block_a >= 0) {
     texts.push_back(
         fmt::format("blocks {} and {} overlap by {:.1f} mm at {:.2f} s, in stage \"{}\": a smaller time "
@@ -205,11 +205,11 @@ std::vector<std::string> warnings(const RunRecord& run) {
 }
 
 /// "most loaded spring: bolt 3, 118 kN/m in "shaking", 98 % of its limit; 2 of 12 springs have reached theirs". Empty: nothing of this kind carried.
-std::string most_loaded_of(std::string_view kind, std::span<const simulation::ElementRecord> elements) {
-  const simulation::ElementRecord* most = nullptr;
+std::string most_loaded_of(std::string_view kind, std::span<const record::ElementRecord> elements) {
+  const record::ElementRecord* most = nullptr;
   long count = 0, yielded = 0;
   const auto load = [](const auto& of) { return std::pair(of.utilization(), of.peak_force); };
-  for (const simulation::ElementRecord& e : elements) {
+  for (const record::ElementRecord& e : elements) {
     if (e.kind != kind) continue;
     ++count;
     yielded += e.has_yielded() ? 1 : 0;
@@ -227,7 +227,7 @@ std::string most_loaded_of(std::string_view kind, std::span<const simulation::El
 std::string most_loaded(const RunRecord& run) {
   std::string text;
   std::vector<std::string_view> kinds;
-  for (const simulation::ElementRecord& e : run.elements) {
+  for (const record::ElementRecord& e : run.elements) {
     if (std::ranges::find(kinds, e.kind) != kinds.end()) continue;
     kinds.push_back(e.kind);
     text += most_loaded_of(e.kind, run.elements);
@@ -252,7 +252,7 @@ std::string outcome_text(const RunRecord& run, std::size_t block_count, std::str
   text += split_at_shaking(run);
   text += result_text(run, scenario, openings);
   text += most_loaded(run);
-  for (const std::string& error : simulation::computation_errors(run))
+  for (const std::string& error : record::computation_errors(run))
     text += "error of the computation: " + error + "\n";
   for (const std::string& warning : warnings(run)) text += "note: " + warning + "\n";
   return text;

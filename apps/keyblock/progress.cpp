@@ -16,9 +16,9 @@
 namespace keyblock::app {
 namespace {
 
-using simulation::Progress;
-using simulation::StageKind;
-using simulation::StageRecord;
+using record::Progress;
+using record::StageKind;
+using record::StageRecord;
 
 constexpr int name_width = 16;
 constexpr int label_width = name_width + 4;  // "4/5 " and the name
@@ -143,7 +143,7 @@ std::vector<Field> outcome(const StageRecord& record, const Progress& last) {
   if (record.interrupted) {
     fields.push_back({0, "interrupted"});
   } else if (record.stage.kind == StageKind::settle) {
-    fields.push_back({0, simulation::verdict_text(record)});
+    fields.push_back({0, record::verdict_text(record)});
   }
   if (record.stage.kind != StageKind::settle) fields.push_back({2, fmt::format("{:.2f} s", record.duration)});
   if (record.still)
@@ -220,7 +220,7 @@ void ProgressObserver::stage_end(int index, const StageRecord& record) {
   write_(finished_log_line(index, stage_count_, record, last_, terminal) + "\n");
 }
 
-void ProgressObserver::end(const simulation::RunRecord&) {
+void ProgressObserver::end(const record::RunRecord&) {
   if (bar_is_open_) write_("\n");
   bar_is_open_ = false;
 }

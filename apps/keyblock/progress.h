@@ -34,21 +34,21 @@ double wall_clock();  ///< s, of a clock that never goes back
 /// `4/5 first earthquake ━━━━━━╸────   58 %  step 5800  11.60 s  512 steps/s  ETA 0:08  3.1 it.`
 /// Where it does not fit, fields are left out, the least important first. A settling stage, which has no
 /// simulated time, shows its worst residual instead.
-std::string bar_line(const simulation::Progress& progress, const Terminal& terminal);
+std::string bar_line(const record::Progress& progress, const Terminal& terminal);
 
 /// What stays on the screen when the stage has ended (stage `index` of `count`), after its last progress
 /// report.
-std::string finished_line(int index, int count, const simulation::StageRecord& record,
-                          const simulation::Progress& last, const Terminal& terminal);
+std::string finished_line(int index, int count, const record::StageRecord& record,
+                          const record::Progress& last, const Terminal& terminal);
 
 /// The same two for a log, with nothing left out: `4/5 first earthquake: 58 %, step 5800, 11.60 s, …`.
-std::string log_line(const simulation::Progress& progress, const Terminal& terminal);
-std::string finished_log_line(int index, int count, const simulation::StageRecord& record,
-                              const simulation::Progress& last, const Terminal& terminal);
+std::string log_line(const record::Progress& progress, const Terminal& terminal);
+std::string finished_log_line(int index, int count, const record::StageRecord& record,
+                              const record::Progress& last, const Terminal& terminal);
 
 /// Shows a run on a terminal, one bar per stage, redrawn in place; elsewhere writes a line now and then, and
 /// one at the end of every stage.
-class ProgressObserver : public simulation::RunObserver {
+class ProgressObserver : public record::RunObserver {
  public:
   /// Of a run of `stage_count` stages. Writes go to `write`, each ready to be shown at once; `terminal` is
   /// asked before each, as windows change their width; `clock` counts seconds.
@@ -60,17 +60,17 @@ class ProgressObserver : public simulation::RunObserver {
   /// Least wall time between two lines of a log, s.
   static constexpr double log_interval = 5.0;
 
-  void stage_begin(int index, const simulation::StageRecord& record) override;
-  void progress(const simulation::Progress& progress) override;
-  void stage_end(int index, const simulation::StageRecord& record) override;
-  void end(const simulation::RunRecord& record) override;
+  void stage_begin(int index, const record::StageRecord& record) override;
+  void progress(const record::Progress& progress) override;
+  void stage_end(int index, const record::StageRecord& record) override;
+  void end(const record::RunRecord& record) override;
 
  private:
   int stage_count_;
   std::function<void(const std::string&)> write_;
   std::function<Terminal()> terminal_;
   std::function<double()> clock_;
-  simulation::Progress last_;
+  record::Progress last_;
   double last_log_ = 0.0;
   bool bar_is_open_ = false;  ///< a bar stands on the line of the cursor
 };

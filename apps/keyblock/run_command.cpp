@@ -84,7 +84,7 @@ void run_scenario(RunArguments arguments) {
     std::cout << arguments.folder << ": this run has ended; there is nothing to go on with\n";
     job::restore_conclusions(arguments.folder);
     say_where_report_is(arguments);
-    if (const auto ended = results::ended_run(arguments.folder)) simulation::check_computation(*ended);
+    if (const auto ended = results::ended_run(arguments.folder)) record::check_computation(*ended);
     return;
   }
   for (const std::string& note : scenario::sliver_notes(scenario, setup.system))
@@ -92,7 +92,7 @@ void run_scenario(RunArguments arguments) {
   say_beforehand(arguments, run);
   run.start();
   while (!run.runner().done()) run.advance();
-  const simulation::RunRecord record = run.finish();
+  const record::RunRecord record = run.finish();
   std::cout << "\n"
             << outcome_text(record, setup.system.blocks.size(), arguments.scenario.file,
                             opening_names(setup));
@@ -101,7 +101,7 @@ void run_scenario(RunArguments arguments) {
   if (record.interrupted) {
     throw RunError(fmt::format("interrupted; --resume goes on from what is kept in {}", arguments.folder));
   }
-  simulation::check_computation(record);
+  record::check_computation(record);
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ void run_task(const TaskArguments& arguments) {
   study::TaskOptions options;
   options.stop = &stop_on_interrupt();
   options.observers = [&](const simulation::RunSetup& setup) {
-    std::vector<std::unique_ptr<simulation::RunObserver>> observers;
+    std::vector<std::unique_ptr<record::RunObserver>> observers;
     observers.push_back(std::make_unique<ProgressObserver>(
         ProgressObserver::to_standard_error(static_cast<int>(setup.stages.size()))));
     if (arguments.descriptor >= 0)

@@ -7,14 +7,14 @@
 
 namespace keyblock::api {
 
-using Record = simulation::ContactRecord;
+using Record = record::ContactRecord;
 
 namespace {
 
 /// A list, and what of a record goes into it.
 struct Filled {
   ContactNumbers list;
-  const simulation::ContactField* from;
+  const record::ContactField* from;
 };
 
 /// The lists of what results keep, too.
@@ -22,7 +22,7 @@ const std::vector<Filled>& filled_lists() {
   static const std::vector<Filled> all = [] {
     std::vector<Filled> found;
     for (const ContactNumbers& list : contact_numbers)
-      for (const simulation::ContactField& field : simulation::contact_fields)
+      for (const record::ContactField& field : record::contact_fields)
         if (std::string_view(list.name) == field.name) found.push_back({list, &field});
     return found;
   }();
@@ -47,20 +47,20 @@ std::vector<ContactColumn> kept_contact_columns() {
   return kept;
 }
 
-ContactColumns::ContactColumns(const simulation::ModelRecord& model, std::size_t count,
+ContactColumns::ContactColumns(const record::ModelRecord& model, std::size_t count,
                                std::span<const ContactColumn> wanted)
     : names_{model.joint_set_names, model.trace_map_names, model.excavation_names}, of_all_(count) {
   contacts_.joint_names = names_.all();
   for (const ContactColumn column : wanted) wanted_.set(static_cast<std::size_t>(column));
 }
 
-simulation::ContactParts ContactColumns::parts() const {
+record::ContactParts ContactColumns::parts() const {
   using enum ContactColumn;
   const auto wants_any = [&](const auto&... columns) { return (wants(columns) || ...); };
-  simulation::ContactParts parts{.places = wants_any(block_a, block_b, vertex, edge, position, normal, joint),
-                                 .slips = false,
-                                 .forces = wants_any(state),
-                                 .strengths = wants_any(friction, cohesion, tension)};
+  record::ContactParts parts{.places = wants_any(block_a, block_b, vertex, edge, position, normal, joint),
+                             .slips = false,
+                             .forces = wants_any(state),
+                             .strengths = wants_any(friction, cohesion, tension)};
   for (const Filled& filled : filled_lists())
     if (wants(filled.list.column)) parts.*filled.from->part = true;
   return parts;

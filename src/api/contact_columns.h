@@ -26,24 +26,23 @@ std::vector<ContactColumn> kept_contact_columns();
 /// Makes columns of contacts that come some at a time.
 class ContactColumns {
  public:
-  ContactColumns(const simulation::ModelRecord& model, std::size_t count,
-                 std::span<const ContactColumn> wanted);
+  ContactColumns(const record::ModelRecord& model, std::size_t count, std::span<const ContactColumn> wanted);
 
   /// What the records need to have for these columns.
-  [[nodiscard]] simulation::ContactParts parts() const;
+  [[nodiscard]] record::ContactParts parts() const;
   /// Throws std::out_of_range beyond `count` contacts.
-  void add(std::span<const simulation::ContactRecord> some);
+  void add(std::span<const record::ContactRecord> some);
   /// All of them; at the end.
   [[nodiscard]] Contacts take() { return std::move(contacts_); }
 
  private:
-  using Records = std::span<const simulation::ContactRecord>;
+  using Records = std::span<const record::ContactRecord>;
   [[nodiscard]] bool wants(ContactColumn column) const { return wanted_[static_cast<std::size_t>(column)]; }
   /// value(record) of each, where the column is wanted.
   template <typename Number, typename Value>
   void fill(ContactColumn column, std::vector<Number>& to, Records some, const Value& value);
   void fill_points(ContactColumn column, std::vector<double>& to, Records some,
-                   Vec2 simulation::ContactRecord::*value);
+                   Vec2 record::ContactRecord::*value);
   void add_places(Records some);
   void add_mechanics(Records some);
 

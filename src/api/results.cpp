@@ -42,12 +42,12 @@ std::size_t Results::frames() const {
 }
 
 Frame Results::frame(std::size_t k) const {
-  const simulation::Frame& of = parts_->data.frames.at(k);
+  const record::Frame& of = parts_->data.frames.at(k);
   Frame frame{of.time, of.stage, of.step, of.displacement, of.stress, {}, of.velocity, {}};
-  for (const simulation::ElementState& e : of.elements)
+  for (const record::ElementState& e : of.elements)
     frame.elements.push_back({xy(e.from), xy(e.to), e.force, e.elongation, e.yielded, e.present});
   if (frame.velocity.empty()) frame.velocity.assign(blocks(), {std::nanf(""), std::nanf("")});
-  for (const simulation::BlockStatus status : of.status)
+  for (const record::BlockStatus status : of.status)
     frame.status.push_back(static_cast<unsigned char>(status));
   return frame;
 }
@@ -57,7 +57,7 @@ std::size_t Results::contact_snapshots() const {
 }
 
 ContactSnapshot Results::contacts(std::size_t k) const {
-  const simulation::ContactFrame& of = parts_->data.contacts.at(k);
+  const record::ContactFrame& of = parts_->data.contacts.at(k);
   api::ContactColumns columns(parts_->data.model, of.contacts.size(), api::kept_contact_columns());
   columns.add(of.contacts);
   return {of.time, of.stage, of.step, columns.take()};
@@ -65,7 +65,7 @@ ContactSnapshot Results::contacts(std::size_t k) const {
 
 std::vector<double> Results::history_times() const {
   std::vector<double> times;
-  for (const simulation::HistoryRow& row : parts_->data.histories) times.push_back(row.time);
+  for (const record::HistoryRow& row : parts_->data.histories) times.push_back(row.time);
   return times;
 }
 
@@ -74,8 +74,8 @@ std::vector<HistoryOfPoint> Results::histories() const {
   const std::vector<std::string>& names = parts_->data.model.history_names;
   for (std::size_t k = 0; k < names.size(); ++k) {
     HistoryOfPoint& of = histories.emplace_back(HistoryOfPoint{names[k], {}, {}, {}, {}});
-    for (const simulation::HistoryRow& row : parts_->data.histories) {
-      const simulation::HistoryRow::Point& p = row.points.at(k);
+    for (const record::HistoryRow& row : parts_->data.histories) {
+      const record::HistoryRow::Point& p = row.points.at(k);
       of.displacement.push_back({p.ux, p.uy});
       of.velocity.push_back({p.vx, p.vy});
       of.stress.push_back({p.sxx, p.syy, p.sxy});
@@ -91,7 +91,7 @@ std::vector<HistoryOfElement> Results::element_histories() const {
   for (std::size_t k = 0; k < followed.size(); ++k) {
     HistoryOfElement& of = histories.emplace_back(
         HistoryOfElement{followed[k].name, static_cast<std::size_t>(followed[k].element), {}, {}});
-    for (const simulation::HistoryRow& row : parts_->data.histories) {
+    for (const record::HistoryRow& row : parts_->data.histories) {
       of.force.push_back(row.elements.at(k).force);
       of.elongation.push_back(row.elements.at(k).elongation);
     }
@@ -101,16 +101,16 @@ std::vector<HistoryOfElement> Results::element_histories() const {
 
 std::vector<Element> Results::elements() const {
   std::vector<Element> elements;
-  for (const simulation::ElementDescription& e : parts_->data.model.elements)
+  for (const record::ElementDescription& e : parts_->data.model.elements)
     elements.push_back({e.name, e.kind, e.limit, xy(e.from), xy(e.to), e.from_block, e.to_block});
   return elements;
 }
 
 std::vector<StepEnergies> Results::energies() const {
   std::vector<StepEnergies> steps;
-  for (const simulation::StepRow& row : parts_->data.steps) {
+  for (const record::StepRow& row : parts_->data.steps) {
     StepEnergies& of = steps.emplace_back(StepEnergies{row.time, row.step, {}});
-    for (const simulation::EnergyField& field : simulation::energy_fields)
+    for (const record::EnergyField& field : record::energy_fields)
       of.energy.emplace_back(field.name, row.energy.*field.number);
   }
   return steps;
@@ -138,7 +138,7 @@ std::vector<std::array<double, 2>> Results::vertices() const {
 
 std::vector<std::vector<std::array<int, 2>>> Results::rings() const {
   std::vector<std::vector<std::array<int, 2>>> blocks;
-  for (const simulation::ModelRecord::Block& block : parts_->data.model.blocks) {
+  for (const record::ModelRecord::Block& block : parts_->data.model.blocks) {
     auto& rings = blocks.emplace_back();
     for (std::size_t r = 0; r + 1 < block.ring_start.size(); ++r)
       rings.push_back({block.ring_start[r], block.ring_start[r + 1]});

@@ -94,10 +94,9 @@ std::string Simulation::finish() {
   const Parts::Stepping now(*parts_);
   if (parts_->closed) throw std::logic_error("the simulation was closed");
   parts_->closed = true;
-  const simulation::RunRecord record =
-      parts_->recorded ? parts_->recorded->finish() : parts_->alone->finish();
+  const record::RunRecord record = parts_->recorded ? parts_->recorded->finish() : parts_->alone->finish();
   parts_->summary = results::summary_json(parts_->listener.model, record);
-  simulation::check_computation(record);
+  record::check_computation(record);
   return parts_->summary;
 }
 

@@ -86,9 +86,9 @@ std::vector<std::size_t> Simulation::first_coefficient() const {
 }
 
 std::vector<BlockFacts> Simulation::block_facts() const {
-  const simulation::ModelRecord& model = parts_->listener.model;
+  const record::ModelRecord& model = parts_->listener.model;
   std::vector<BlockFacts> facts;
-  for (const simulation::ModelRecord::Block& block : model.blocks) {
+  for (const record::ModelRecord::Block& block : model.blocks) {
     BlockFacts& of = facts.emplace_back(
         BlockFacts{block.name, {}, block.fixed, block.area, block.density, block.young, block.poisson});
     for (const int e : block.excavations)
@@ -114,7 +114,7 @@ std::vector<double> Simulation::stress() const {
 
 std::vector<std::uint8_t> Simulation::status() const {
   std::vector<std::uint8_t> status;
-  for (const simulation::BlockStatus s : parts_->runner().status())
+  for (const record::BlockStatus s : parts_->runner().status())
     status.push_back(static_cast<std::uint8_t>(s));
   return status;
 }
@@ -122,8 +122,8 @@ std::vector<std::uint8_t> Simulation::status() const {
 std::vector<std::pair<std::string, double>> Simulation::damage() const {
   std::vector<std::pair<std::string, double>> measures;
   if (const auto damage = parts_->runner().damage()) {
-    for (const std::string& name : simulation::damage_names())
-      measures.emplace_back(name, simulation::damage_value(*damage, name));
+    for (const std::string& name : record::damage_names())
+      measures.emplace_back(name, record::damage_value(*damage, name));
   }
   return measures;
 }
@@ -166,7 +166,7 @@ Contacts Simulation::contacts() const {
 Contacts Simulation::contacts(const std::vector<ContactColumn>& columns) const {
   api::ContactColumns made(parts_->listener.model, contact_count(), columns);
   if (contact_count() > 0)
-    parts_->runner().each_contact([&](std::span<const simulation::ContactRecord> some) { made.add(some); },
+    parts_->runner().each_contact([&](std::span<const record::ContactRecord> some) { made.add(some); },
                                   made.parts());
   return made.take();
 }
@@ -183,7 +183,7 @@ std::vector<ContactStrength> Simulation::contact_strengths() const {
 }
 
 std::vector<std::pair<std::string, double>> Simulation::energy() const {
-  const simulation::Energy e = parts_->runner().energy();
+  const record::Energy e = parts_->runner().energy();
   return {{"kinetic", e.kinetic}, {"strain", e.strain},       {"gravity", e.gravity},
           {"contact", e.contact}, {"friction", e.friction},   {"damping", e.damping},
           {"input", e.input},     {"numerical", e.numerical}, {"radiated", e.radiated},

@@ -18,15 +18,15 @@ namespace keyblock {
 struct Simulation::Parts {
   Parts() = default;
   /// Passes progress on and keeps what summary.json is made of.
-  class Listener final : public simulation::RunObserver {
+  class Listener final : public record::RunObserver {
    public:
-    void begin(const simulation::ModelRecord& record) override { model = record; }
-    void progress(const simulation::Progress& now) override {
+    void begin(const record::ModelRecord& record) override { model = record; }
+    void progress(const record::Progress& now) override {
       if (!call) return;
       call({now.stage, now.stage_count, now.stage_name, now.fraction, now.time, now.step, now.seconds_left});
     }
 
-    simulation::ModelRecord model;
+    record::ModelRecord model;
     std::function<void(const Progress&)> call;
   };
 

@@ -7,7 +7,7 @@
 namespace keyblock::api {
 
 struct SimulationAccess {
-  static std::shared_ptr<Simulation> make(const simulation::ModelRecord& model) {
+  static std::shared_ptr<Simulation> make(const record::ModelRecord& model) {
     auto parts = std::make_unique<Simulation::Parts>();
     parts->stepping = true;  // by somebody else, all the time
     parts->listener.model = model;
@@ -22,13 +22,13 @@ struct SimulationAccess {
 
 namespace {
 
-class ModelKeeper final : public simulation::RunObserver {
+class ModelKeeper final : public record::RunObserver {
  public:
-  explicit ModelKeeper(simulation::ModelRecord& model) : model_(model) {}
-  void begin(const simulation::ModelRecord& model) override { model_ = model; }
+  explicit ModelKeeper(record::ModelRecord& model) : model_(model) {}
+  void begin(const record::ModelRecord& model) override { model_ = model; }
 
  private:
-  simulation::ModelRecord& model_;
+  record::ModelRecord& model_;
 };
 
 }  // namespace
@@ -37,7 +37,7 @@ Steered::~Steered() {
   if (simulation_) SimulationAccess::put(*simulation_, nullptr);
 }
 
-std::unique_ptr<simulation::RunObserver> Steered::observer() {
+std::unique_ptr<record::RunObserver> Steered::observer() {
   return std::make_unique<ModelKeeper>(model_);
 }
 

@@ -20,13 +20,13 @@ class Steered {
   ~Steered();
 
   /// Is told of the model.
-  [[nodiscard]] std::unique_ptr<simulation::RunObserver> observer();
+  [[nodiscard]] std::unique_ptr<record::RunObserver> observer();
   /// The simulation, of which `runner` has just taken a step.
   Simulation& of(simulation::Runner& runner);
   [[nodiscard]] bool was_stopped() const;
 
  private:
-  simulation::ModelRecord model_;
+  record::ModelRecord model_;
   std::shared_ptr<Simulation> simulation_;
 };
 

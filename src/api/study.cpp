@@ -97,7 +97,7 @@ void run_of_study(const std::filesystem::path& folder, std::size_t run,
   study::TaskOptions options;
   options.hooks = hooks;
   options.observers = [&](const simulation::RunSetup&) {
-    std::vector<std::unique_ptr<simulation::RunObserver>> observers;
+    std::vector<std::unique_ptr<record::RunObserver>> observers;
     observers.push_back(steered.observer());
     return observers;
   };

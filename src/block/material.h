@@ -1,6 +1,6 @@
 #pragma once
 
-namespace keyblock {
+namespace keyblock::block {
 
 enum class PlaneState { plane_stress, plane_strain };
 
@@ -20,4 +20,4 @@ struct InSituStress {
   double reference_y = 0.0;                       ///< where the constant parts hold
 };
 
-}  // namespace keyblock
+}  // namespace keyblock::block

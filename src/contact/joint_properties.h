@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-namespace keyblock {
+namespace keyblock::contact {
 
 /// Strength and stiffness of a joint.
 struct JointProperties {
@@ -21,4 +21,4 @@ struct JointProperties {
   double stiffness_ratio = 0.4;
 };
 
-}  // namespace keyblock
+}  // namespace keyblock::contact

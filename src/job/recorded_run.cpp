@@ -16,7 +16,7 @@
 namespace keyblock::job {
 
 RecordedRun::RecordedRun(const scenario::Scenario& scenario, const simulation::RunSetup& setup,
-                         Options options, simulation::RunObserver& observer)
+                         Options options, record::RunObserver& observer)
     : setup_(setup),
       options_(std::move(options)),
       guard_(options_.folder, files_read(scenario), setup, options_.use),
@@ -53,9 +53,9 @@ simulation::Advance RecordedRun::advance() {
   return with_report_of_failure([&] { return runner_->advance(); });
 }
 
-simulation::RunRecord RecordedRun::finish() {
+record::RunRecord RecordedRun::finish() {
   try {
-    simulation::RunRecord record = with_report_of_failure([&] { return runner_->finish(); });
+    record::RunRecord record = with_report_of_failure([&] { return runner_->finish(); });
     write_report(options_.folder);
     close();
     return record;

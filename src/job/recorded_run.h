@@ -17,7 +17,7 @@ namespace keyblock::job {
 ///     RecordedRun run(scenario, setup, options, observer);
 ///     if (!run.has_ended()) run.start();
 ///     while (!run.runner().done()) run.advance();
-///     const simulation::RunRecord record = run.finish();
+///     const record::RunRecord record = run.finish();
 ///
 /// The folder belongs to this process until finish() or close(), or while the object lives. An object that is closed or destroyed before
 /// finish() leaves what a killed run leaves: results up to the last flush, and a checkpoint.
@@ -31,7 +31,7 @@ class RecordedRun {
 
   /// Takes hold of the folder. `setup` and `observer` must outlive the run. Throws InputError as ResultFolder does.
   RecordedRun(const scenario::Scenario& scenario, const simulation::RunSetup& setup, Options options,
-              simulation::RunObserver& observer);
+              record::RunObserver& observer);
 
   /// Whether the run that is to be resumed has come to its end already: start() must not be called then.
   [[nodiscard]] bool has_ended() const { return guard_.has_ended(); }
@@ -42,7 +42,7 @@ class RecordedRun {
   /// One step of the plan. Where the run cannot go on, the report is written before the RunError is passed on.
   simulation::Advance advance();
   /// Ends the run where it is; the page is written. The folder is let go, also where that fails.
-  simulation::RunRecord finish();
+  record::RunRecord finish();
   /// Lets the folder go. The runner must not advance after that.
   void close();
   /// After start().
@@ -56,7 +56,7 @@ class RecordedRun {
   Options options_;
   ResultFolder guard_;
   results::ResultWriter writer_;
-  simulation::FanOut observers_;
+  record::FanOut observers_;
   std::optional<simulation::Runner> runner_;
 };
 

@@ -29,7 +29,7 @@ struct Block {
   double area = 0.0;    ///< m², of the reference polygon
   Vec2 centroid;        ///< m, likewise
   double radius = 0.0;  ///< m, from the centroid to the farthest vertex
-  Material material;
+  block::Material material;
   block::Pose pose;
   block::Elasticity elasticity;
   Polygon reference;
@@ -73,7 +73,7 @@ struct Model {
       spring_stiffness;  ///< N/m of each of the springs between points, likewise; empty: their own
   std::vector<std::shared_ptr<const Coupling>> couplings;  ///< all except contacts
   std::vector<PrescribedMotion> motions;
-  std::optional<InSituStress> in_situ;
+  std::optional<block::InSituStress> in_situ;
   Vec2 gravity;  ///< m/s²
   /// m/s², acceleration of the ground that static steps stand for: each block has the inertia force of it as a load.
   Vec2 static_ground;

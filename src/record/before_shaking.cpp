@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 std::optional<std::size_t> last_before_shaking(std::span<const Stage> stages) {
   const auto excavated =
@@ -14,4 +14,4 @@ std::optional<std::size_t> last_before_shaking(std::span<const Stage> stages) {
   return static_cast<std::size_t>(shaking - stages.begin()) - 1;
 }
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -5,7 +5,7 @@
 
 #include "record/stage.h"
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// Place of the last stage before the first shaking of the opening. What has come down by its end, gravity brought down
 /// before anything shook; what comes down later, the shaking adds.
@@ -14,4 +14,4 @@ namespace keyblock::simulation {
 /// excavations, the first of all. None where there is no such stage, or none before it.
 std::optional<std::size_t> last_before_shaking(std::span<const Stage> stages);
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

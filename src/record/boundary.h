@@ -4,7 +4,7 @@
 
 #include "geometry/vec2.h"
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// What holds the sides of the rock, and what they let out.
 enum class Sides {
@@ -47,4 +47,4 @@ struct BoundaryRecord {
   std::string source;                     ///< what the layers are taken from
 };
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "record/energy_warnings.h"
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 namespace {
 
@@ -41,4 +41,4 @@ std::string computation_errors_text(const std::vector<std::string>& errors) {
   return text;
 }
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

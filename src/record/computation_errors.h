@@ -4,7 +4,7 @@
 
 #include "record/record.h"
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// Why the numbers of a run are not to be trusted, each in words: what its own checks have found that no input explains. Empty: nothing.
 /// Commands end with exit code 2 where there is something, and outputs list it (docs/guide/results.md, "Errors of the computation").
@@ -16,4 +16,4 @@ void check_computation(const RunRecord& run);
 /// As one text, for a message; empty: there are none.
 [[nodiscard]] std::string computation_errors_text(const std::vector<std::string>& errors);
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -1,7 +1,7 @@
 #pragma once
 #include "record/record.h"
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// A number that each contact has, described once: result.h5, exports and Python have their columns from here.
 struct ContactField {
@@ -37,4 +37,4 @@ inline constexpr ContactField contact_fields[] = {
     {"strength_left", "1", "of what slip or opening takes from a joint; 0 of a bond that has broken",
      &ContactRecord::strength_left, &ContactParts::strengths, false, true}};
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

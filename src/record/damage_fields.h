@@ -8,7 +8,7 @@
 #include "record/record.h"
 
 /// The measures of damage, each described once: files, studies, limits and pages read these tables.
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// The unit in which people are shown a measure: numbers are multiplied by the factor.
 struct ShownUnit {
@@ -244,4 +244,4 @@ inline double damage_value(const Damage& damage, std::string_view measure) {
   return value;
 }
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -5,7 +5,7 @@
 
 #include "geometry/vec2.h"
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// Whether an element of a limit has reached it; the force is that but for rounding then.
 inline bool reaches_limit(double force, double limit) {
@@ -89,4 +89,4 @@ inline constexpr ElementField element_fields[] = {
     {"yielded_m", "m", &ElementRecord::yielded},     {"peak_force_n_m", "N/m", &ElementRecord::peak_force},
     {"peak_time_s", "s", &ElementRecord::peak_time}, {"limit_n_m", "N/m", &ElementRecord::limit}};
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 namespace {
 
@@ -69,4 +69,4 @@ std::vector<std::string> failed_balances(const RunRecord& run) {
   return texts;
 }
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -4,7 +4,7 @@
 
 #include "record/record.h"
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// Energy::residual_ratio of a run, above which its results are to be looked at with other eyes …
 inline constexpr double doubtful_residual = 0.01;
@@ -22,4 +22,4 @@ inline constexpr double failed_made = 0.5;
 /// more than `failed_made`. A run that was interrupted is judged once it has ended.
 [[nodiscard]] std::vector<std::string> failed_balances(const RunRecord& run);
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <utility>
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 namespace {
 
 struct NamedPart {
@@ -78,4 +78,4 @@ std::string pressure_search(std::string_view scenario, std::span<const std::stri
                      10.0 * damage.largest_block_pressure);
 }
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -5,7 +5,7 @@
 
 #include "record/record.h"
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// The name of a part in files; null for `none`.
 const char* wall_part_name(WallPart part);
@@ -25,4 +25,4 @@ double width_along_wall(const Polygon& block, WallPart part, Vec2 down);
 std::string pressure_search(std::string_view scenario, std::span<const std::string> openings,
                             const Damage& damage);
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -4,7 +4,7 @@
 
 #include "record/record.h"
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// Passes a run on to several observers, in their order. Does not own them.
 class FanOut : public RunObserver {
@@ -31,4 +31,4 @@ class FanOut : public RunObserver {
   std::vector<RunObserver*> observers_;
 };
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -17,7 +17,7 @@
 #include "record/stage.h"
 
 /// What a run tells the outside: plain data, written to the result file and drawn in the report.
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// What swings alone, and what goes as a wave, at a frequency loses, as shares of critical.
 struct DampingRow {
@@ -425,4 +425,4 @@ class RunObserver {
   virtual void end(const RunRecord&) {}
 };
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

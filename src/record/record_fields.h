@@ -6,7 +6,7 @@
 #include "record/record.h"
 
 /// The members of records that are written in several places, once, with their names.
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// A term of the balance of energies, in the order of every table.
 struct EnergyField {
@@ -57,4 +57,4 @@ inline std::vector<std::string> history_quantities() {
   return names;
 }
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

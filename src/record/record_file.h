@@ -1,6 +1,6 @@
 #pragma once
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// How far a field of a record goes: each of these has the fields of the ones before it.
 enum class RecordFile : unsigned char {
@@ -9,4 +9,4 @@ enum class RecordFile : unsigned char {
   result,   ///< result.h5, and checkpoints
 };
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -4,7 +4,7 @@
 
 /// The record of a run: each field that is written as it is, described once. Places need the origin of the model; stages have a table of
 /// their own (stage_fields.h).
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 struct RunField {
   const char* name;  ///< in files
@@ -30,4 +30,4 @@ void visit_run(Record& r, const Visit& visit) {
   visit(RunField{"interrupted"}, r.interrupted);
 }
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 bool wears_joints(std::span<const Stage> stages, std::size_t k) {
   if (stages[k].wears_joints) return *stages[k].wears_joints;
@@ -13,4 +13,4 @@ bool wears_joints(std::span<const Stage> stages, std::size_t k) {
   return k + 1 == stages.size() || !std::ranges::all_of(stages.first(k + 1), turns_gravity_on);
 }
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

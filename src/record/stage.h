@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 enum class StageKind {
   settle,  ///< static: pseudo-time steps without velocity until every block is in equilibrium
@@ -50,4 +50,4 @@ struct Stage {
 /// an excavation, a load of an earthquake or anything installed do not count, as long as nothing else came before them and a stage comes after.
 bool wears_joints(std::span<const Stage> stages, std::size_t k);
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

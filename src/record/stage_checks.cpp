@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 bool has_known_blocks(const StageRecord& stage, std::size_t blocks) {
   const auto is_block = [&](int block) { return block >= 0 && static_cast<std::size_t>(block) < blocks; };
@@ -15,4 +15,4 @@ bool has_known_blocks(const StageRecord& stage, std::size_t blocks) {
          (!stage.standing || *stage.standing <= Standing::unstable);
 }
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

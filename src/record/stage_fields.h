@@ -3,7 +3,7 @@
 #include "record/record_file.h"
 
 /// The record of a stage, each field described once: checkpoints, result.h5, summary.json, the report and Python have them from here.
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 struct StageField {
   const char* name;  ///< in files; "equilibrium.reached" is `reached` of the object `equilibrium`
@@ -84,4 +84,4 @@ void visit_stage(Record& r, const Visit& visit) {
   field({"motion", "m/s2", "as applied, thinned to what a plot needs", result}, r.motion);
 }
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

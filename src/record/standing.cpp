@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 namespace {
 
 constexpr StandingWord words[] = {{Standing::stands, "stands", "stands", "stand"},
@@ -40,4 +40,4 @@ const char* standing_name(Standing standing) {
   return word_of(standing).name;
 }
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -3,7 +3,7 @@
 
 #include "record/record.h"
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// A word for how blocks are, as files and people have it.
 struct StandingWord {
@@ -33,4 +33,4 @@ const StandingWord& word_of(Standing standing);
 /// In files.
 const char* standing_name(Standing standing);
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 namespace {
 
@@ -85,4 +85,4 @@ std::string verdict_text(const StageRecord& stage) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

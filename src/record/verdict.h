@@ -3,7 +3,7 @@
 
 #include "record/record.h"
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 
 /// What a static stage came to.
 enum class Verdict {
@@ -30,4 +30,4 @@ enum class Movement {
 /// "in equilibrium", "in equilibrium after moving 0.031 m", "mechanism of 22 blocks, 1 block falling", "not reached".
 [[nodiscard]] std::string verdict_text(const StageRecord& stage);
 
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

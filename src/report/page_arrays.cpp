@@ -12,8 +12,8 @@ namespace keyblock::report {
 
 namespace {
 
-using simulation::ContactFrame;
-using simulation::Frame;
+using record::ContactFrame;
+using record::Frame;
 
 constexpr std::size_t max_frames = 300;
 constexpr std::size_t max_snapshots = 60;
@@ -24,7 +24,7 @@ constexpr std::size_t max_displacements = 8'000'000;
 constexpr std::size_t min_frames = 60;
 
 void add_model(const results::RunData& run, ArrayPack& pack) {
-  const simulation::ModelRecord& model = run.model;
+  const record::ModelRecord& model = run.model;
   std::vector<std::uint32_t> begin, end, block;
   std::vector<std::uint8_t> order, fixed, kind;
   std::vector<std::int32_t> index;
@@ -79,7 +79,7 @@ void add_frames(const results::RunData& run, const std::vector<std::size_t>& cho
     time.push_back(frame.time);
     step.push_back(static_cast<double>(frame.step));
     stage.push_back(frame.stage);
-    for (const simulation::BlockStatus s : frame.status) status.push_back(static_cast<std::uint8_t>(s));
+    for (const record::BlockStatus s : frame.status) status.push_back(static_cast<std::uint8_t>(s));
   }
   pack.add("frame.time", time);
   pack.add("frame.step", step);
@@ -104,15 +104,15 @@ void add_elements(const results::RunData& run, const std::vector<std::size_t>& c
     to.push_back(static_cast<float>(p.x));
     to.push_back(static_cast<float>(p.y));
   };
-  for (const simulation::ElementDescription& e : run.model.elements) {
+  for (const record::ElementDescription& e : run.model.elements) {
     add(reference, e.from);
     add(reference, e.to);
   }
   for (const std::size_t f : chosen) {
-    for (const simulation::ElementState& e : run.frames[f].elements) {
+    for (const record::ElementState& e : run.frames[f].elements) {
       add(ends, e.from);
       add(ends, e.to);
-      for (const auto& field : simulation::element_state_fields)
+      for (const auto& field : record::element_state_fields)
         numbers.push_back(static_cast<float>(e.*field.number));
       present.push_back(e.present ? 1 : 0);
     }
@@ -177,21 +177,21 @@ void add_curves(std::string_view x_name, std::string_view values_name, const Cur
 
 void add_histories(const results::RunData& run, ArrayPack& pack) {
   Curves curves;
-  constexpr std::size_t quantities = std::size(simulation::history_fields);
-  constexpr std::size_t of_element = simulation::element_history_fields.size();
+  constexpr std::size_t quantities = std::size(record::history_fields);
+  constexpr std::size_t of_element = record::element_history_fields.size();
   const std::size_t first_element = 1 + quantities * run.model.history_names.size();
   curves.columns.resize(first_element + of_element * run.model.element_histories.size());
-  for (const simulation::HistoryRow& row : run.histories) {
+  for (const record::HistoryRow& row : run.histories) {
     curves.x.push_back(row.time);
     curves.columns[0].push_back(static_cast<double>(row.step));
     for (std::size_t p = 0; p < run.model.history_names.size(); ++p) {
       const auto& q = row.points[p];
       for (std::size_t c = 0; c < quantities; ++c)
-        curves.columns[1 + quantities * p + c].push_back(q.*simulation::history_fields[c].member);
+        curves.columns[1 + quantities * p + c].push_back(q.*record::history_fields[c].member);
     }
     std::size_t column = first_element;
-    for (const simulation::ElementState& element : row.elements) {
-      for (const auto& field : simulation::element_history_fields)
+    for (const record::ElementState& element : row.elements) {
+      for (const auto& field : record::element_history_fields)
         curves.columns[column++].push_back(element.*field.number);
     }
   }
@@ -200,8 +200,8 @@ void add_histories(const results::RunData& run, ArrayPack& pack) {
 
 void add_steps(const results::RunData& run, ArrayPack& pack) {
   Curves curves;
-  for (const simulation::StepRow& row : run.steps) {
-    const simulation::Energy& e = row.energy;
+  for (const record::StepRow& row : run.steps) {
+    const record::Energy& e = row.energy;
     const double residual = e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping +
                             e.radiated + e.numerical - e.input - e.water;
     // In the order of step_columns in page_header.cpp.
@@ -232,7 +232,7 @@ void add_steps(const results::RunData& run, ArrayPack& pack) {
 
 void add_motions(const results::RunData& run, ArrayPack& pack) {
   for (std::size_t k = 0; k < run.run.stages.size(); ++k) {
-    const simulation::StageRecord& stage = run.run.stages[k];
+    const record::StageRecord& stage = run.run.stages[k];
     if (stage.motion_time.empty()) continue;
     std::vector<double> time;
     std::vector<float> x, y;

@@ -19,8 +19,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json stage_json(const simulation::StageRecord& record) {
-  ordered_json json = results::stage_fields_json(record, simulation::RecordFile::page);
+ordered_json stage_json(const record::StageRecord& record) {
+  ordered_json json = results::stage_fields_json(record, record::RecordFile::page);
   results::add_verdict(record, json["equilibrium"]);
   return json;
 }
@@ -28,7 +28,7 @@ ordered_json stage_json(const simulation::StageRecord& record) {
 /// What the ground is, and what it came to beside the model.
 std::vector<std::pair<std::string, std::string>> ground_rows(const results::RunData& data) {
   auto rows = data.model.ground;
-  for (const simulation::PlaneRecord& plane : data.run.planes)
+  for (const record::PlaneRecord& plane : data.run.planes)
     rows.emplace_back(
         fmt::format("“{}” beside the model, x = {:.4g} m", plane.joint, plane.x + data.model.origin.x),
         fmt::format("at {:.4g} m it slipped by up to {:.3g} mm, and {:.3g} mm are left{}",
@@ -41,13 +41,13 @@ std::vector<std::pair<std::string, std::string>> ground_rows(const results::RunD
 std::string pressure_search(const results::RunData& data) {
   for (auto stage = data.run.stages.rbegin(); stage != data.run.stages.rend(); ++stage) {
     if (!std::isnan(stage->damage.fallen_weight))
-      return simulation::pressure_search("SCENARIO.toml", data.model.excavation_names, stage->damage);
+      return record::pressure_search("SCENARIO.toml", data.model.excavation_names, stage->damage);
   }
   return {};
 }
 
 ordered_json model_json(const results::RunData& data) {
-  const simulation::ModelRecord& model = data.model;
+  const record::ModelRecord& model = data.model;
   ordered_json outlines = ordered_json::array();
   for (const auto& outline : model.excavation_outlines) outlines.push_back(results::points_json(outline));
   ordered_json names = ordered_json::object();
@@ -81,14 +81,14 @@ ordered_json model_json(const results::RunData& data) {
 }
 
 ordered_json run_json(const results::RunData& data) {
-  const simulation::RunRecord& run = data.run;
+  const record::RunRecord& run = data.run;
   ordered_json stages = ordered_json::array();
-  for (const simulation::StageRecord& record : run.stages) stages.push_back(stage_json(record));
-  ordered_json json = results::run_fields_json(run, simulation::RecordFile::page);
+  for (const record::StageRecord& record : run.stages) stages.push_back(stage_json(record));
+  ordered_json json = results::run_fields_json(run, record::RecordFile::page);
   if (data.cut_off) json["open_close"] = nullptr;
   json["max_overlap_at"] = results::overlap_place_json(run.max_overlap, data.model.origin);
   json["contact_checks"] = results::contact_checks_json(run.contact_checks, data.model.origin);
-  json["errors"] = simulation::computation_errors(run);
+  json["errors"] = record::computation_errors(run);
   json["elements"] = results::elements_json(run.elements, data.model.origin);
   json["stages"] = stages;
   json["cut_off"] = data.cut_off;
@@ -96,7 +96,7 @@ ordered_json run_json(const results::RunData& data) {
 }
 
 /// The smallest number of steps from one row of a stage to the next; 0 where there are no two rows.
-long steps_between_rows(const std::vector<simulation::StepRow>& rows) {
+long steps_between_rows(const std::vector<record::StepRow>& rows) {
   long least = 0;
   for (std::size_t k = 1; k < rows.size(); ++k) {
     const long between = rows[k].step - rows[k - 1].step;

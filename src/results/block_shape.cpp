@@ -12,7 +12,7 @@ namespace keyblock::results {
 namespace {
 
 template <class Position>
-Polygon shape(const simulation::ModelRecord& model, std::size_t block, const Position& position) {
+Polygon shape(const record::ModelRecord& model, std::size_t block, const Position& position) {
   Polygon polygon;
   const std::vector<int>& start = model.blocks[block].ring_start;
   for (std::size_t r = 0; r + 1 < start.size(); ++r) {
@@ -28,19 +28,18 @@ Polygon shape(const simulation::ModelRecord& model, std::size_t block, const Pos
 
 }  // namespace
 
-Polygon block_shape(const simulation::ModelRecord& model, const simulation::Frame& frame, std::size_t block) {
+Polygon block_shape(const record::ModelRecord& model, const record::Frame& frame, std::size_t block) {
   return shape(model, block, [&](std::size_t k) {
     const auto [ux, uy] = frame.displacement[k];
     return model.origin + model.vertices[k] + Vec2{ux, uy};
   });
 }
 
-Polygon block_shape(const simulation::ModelRecord& model, std::size_t block) {
+Polygon block_shape(const record::ModelRecord& model, std::size_t block) {
   return shape(model, block, [&](std::size_t k) { return model.origin + model.vertices[k]; });
 }
 
-Vec2 block_displacement(const simulation::ModelRecord& model, const simulation::Frame& frame,
-                        std::size_t block) {
+Vec2 block_displacement(const record::ModelRecord& model, const record::Frame& frame, std::size_t block) {
   // In local coordinates, where no digits are lost, and from the same outline twice.
   const Polygon before = shape(model, block, [&](std::size_t k) { return model.vertices[k]; });
   const Polygon after = shape(model, block, [&](std::size_t k) {
@@ -50,7 +49,7 @@ Vec2 block_displacement(const simulation::ModelRecord& model, const simulation::
   return centroid(after) - centroid(before);
 }
 
-std::vector<std::array<int, 3>> block_triangles(const simulation::ModelRecord& model, std::size_t block) {
+std::vector<std::array<int, 3>> block_triangles(const record::ModelRecord& model, std::size_t block) {
   const std::vector<int>& start = model.blocks[block].ring_start;
   const auto first = model.vertices.begin() + start.front(), last = model.vertices.begin() + start.back();
   const auto index = [&](Vec2 p) {
@@ -70,12 +69,12 @@ std::vector<std::array<int, 3>> block_triangles(const simulation::ModelRecord& m
   return triangles;
 }
 
-std::string status_name(simulation::BlockStatus status) {
+std::string status_name(record::BlockStatus status) {
   constexpr const char* names[] = {"in place", "loosened", "fallen", "excavated"};
   return names[static_cast<std::size_t>(status)];
 }
 
-std::string contact_state_name(simulation::ContactState state) {
+std::string contact_state_name(record::ContactState state) {
   constexpr const char* names[] = {"open", "sliding", "locked"};
   return names[static_cast<std::size_t>(state)];
 }

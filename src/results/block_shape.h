@@ -9,20 +9,19 @@
 namespace keyblock::results {
 
 /// A block as it lies in a frame, in real coordinates.
-Polygon block_shape(const simulation::ModelRecord& model, const simulation::Frame& frame, std::size_t block);
+Polygon block_shape(const record::ModelRecord& model, const record::Frame& frame, std::size_t block);
 /// The same before anything moved.
-Polygon block_shape(const simulation::ModelRecord& model, std::size_t block);
+Polygon block_shape(const record::ModelRecord& model, std::size_t block);
 
 /// Displacement of a block's centroid, m.
-Vec2 block_displacement(const simulation::ModelRecord& model, const simulation::Frame& frame,
-                        std::size_t block);
+Vec2 block_displacement(const record::ModelRecord& model, const record::Frame& frame, std::size_t block);
 
 /// Display vertices (indices into ModelRecord::vertices) of triangles that cover a block in reference position.
-std::vector<std::array<int, 3>> block_triangles(const simulation::ModelRecord& model, std::size_t block);
+std::vector<std::array<int, 3>> block_triangles(const record::ModelRecord& model, std::size_t block);
 
 /// Names as in the user guide.
-std::string status_name(simulation::BlockStatus status);
-std::string contact_state_name(simulation::ContactState state);
+std::string status_name(record::BlockStatus status);
+std::string contact_state_name(record::ContactState state);
 std::string edge_kind_name(cutting::EdgeKind kind);
 
 }  // namespace keyblock::results

@@ -10,9 +10,9 @@ namespace {
 
 using hdf5::read_array;
 using hdf5::read_column;
-using simulation::contact_fields;
-using simulation::ContactField;
-using simulation::ContactRecord;
+using record::contact_fields;
+using record::ContactField;
+using record::ContactRecord;
 
 /// The columns of numbers of contacts that a file has, one for each number: that with the sign, where there are two.
 class Numbers {
@@ -66,7 +66,7 @@ ContactTable::ContactTable(hid_t file)
     numbers_.emplace_back(group_, field.name, std::vector<hsize_t>{});
 }
 
-void ContactTable::append(const simulation::ContactFrame& frame) {
+void ContactTable::append(const record::ContactFrame& frame) {
   for (const ContactRecord& c : frame.contacts) {
     contact_.append(static_cast<std::int64_t>(contact_.rows()));
     block_a_.append(c.block_a);
@@ -94,7 +94,7 @@ void ContactTable::flush() {
   time_.flush();
 }
 
-std::vector<simulation::ContactFrame> ContactTable::read(hid_t file) {
+std::vector<record::ContactFrame> ContactTable::read(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "contacts");
   const auto time = read_column<double>(group, "time");
   const auto stage = read_column<std::int32_t>(group, "stage");
@@ -110,17 +110,17 @@ std::vector<simulation::ContactFrame> ContactTable::read(hid_t file) {
   require(normal.width() == 2, "contacts/normal");
   const std::size_t rows = std::min({block_a.rows(), block_b.rows(), state.rows(), edge_kind.rows(),
                                      edge_index.rows(), position.rows(), normal.rows(), numbers.rows()});
-  std::vector<simulation::ContactFrame> frames;
+  std::vector<record::ContactFrame> frames;
   std::size_t k = 0;
   for (std::size_t f = 0; f < common_rows(time, {stage.rows(), step.rows(), end.rows()}); ++f) {
     const auto last = static_cast<std::size_t>(end.values[f]);
     if (last > rows) break;
-    simulation::ContactFrame frame{time.values[f], stage.values[f], {}, step.values[f]};
+    record::ContactFrame frame{time.values[f], stage.values[f], {}, step.values[f]};
     for (; k < last; ++k) {
       ContactRecord& c = frame.contacts.emplace_back();
       c.block_a = block_a.values[k];
       c.block_b = block_b.values[k];
-      c.state = enumerator(state.values[k], simulation::ContactState::locked, "contacts/state");
+      c.state = enumerator(state.values[k], record::ContactState::locked, "contacts/state");
       c.position = {position.values[2 * k], position.values[2 * k + 1]};
       c.normal = {normal.values[2 * k], normal.values[2 * k + 1]};
       c.label = {enumerator(edge_kind.values[k], cutting::EdgeKind::domain, "contacts/edge_kind"),

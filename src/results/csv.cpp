@@ -51,31 +51,30 @@ std::string csv_field(std::string_view text) {
   return out + "\"";
 }
 
-bool has_histories(const simulation::ModelRecord& model) {
+bool has_histories(const record::ModelRecord& model) {
   return !model.history_names.empty() || !model.element_histories.empty();
 }
 
-std::vector<std::string> history_columns(const simulation::ModelRecord& model) {
+std::vector<std::string> history_columns(const record::ModelRecord& model) {
   std::vector<std::string> columns{"time"};
   for (const std::string& name : model.history_names) {
-    for (const simulation::HistoryField& field : simulation::history_fields)
+    for (const record::HistoryField& field : record::history_fields)
       columns.push_back(fmt::format("{}.{}", name, field.name));
   }
-  for (const simulation::ElementHistory& history : model.element_histories) {
-    for (const auto& field : simulation::element_history_fields)
+  for (const record::ElementHistory& history : model.element_histories) {
+    for (const auto& field : record::element_history_fields)
       columns.push_back(fmt::format("{}.{}", history.name, field.name));
   }
   return columns;
 }
 
-std::vector<double> history_numbers(const simulation::HistoryRow& row) {
+std::vector<double> history_numbers(const record::HistoryRow& row) {
   std::vector<double> numbers{row.time};
   for (const auto& p : row.points) {
-    for (const simulation::HistoryField& field : simulation::history_fields)
-      numbers.push_back(p.*field.member);
+    for (const record::HistoryField& field : record::history_fields) numbers.push_back(p.*field.member);
   }
-  for (const simulation::ElementState& element : row.elements) {
-    for (const auto& field : simulation::element_history_fields) numbers.push_back(element.*field.number);
+  for (const record::ElementState& element : row.elements) {
+    for (const auto& field : record::element_history_fields) numbers.push_back(element.*field.number);
   }
   return numbers;
 }
@@ -89,21 +88,20 @@ void add_cell(double number, bool is_there, std::string& text) {
 
 }  // namespace
 
-std::string histories_csv(const simulation::ModelRecord& model,
-                          const std::vector<simulation::HistoryRow>& rows) {
+std::string histories_csv(const record::ModelRecord& model, const std::vector<record::HistoryRow>& rows) {
   std::string text;
   for (const std::string& column : history_columns(model))
     text += (text.empty() ? "" : ",") + csv_field(column);
   text += "\n";
-  for (const simulation::HistoryRow& row : rows) {
+  for (const record::HistoryRow& row : rows) {
     fmt::format_to(std::back_inserter(text), "{}", row.time);
     for (const auto& p : row.points) {
       const bool is_there = !std::isnan(p.ux);
-      for (const simulation::HistoryField& field : simulation::history_fields)
+      for (const record::HistoryField& field : record::history_fields)
         add_cell(p.*field.member, is_there, text);
     }
-    for (const simulation::ElementState& element : row.elements) {
-      for (const auto& field : simulation::element_history_fields)
+    for (const record::ElementState& element : row.elements) {
+      for (const auto& field : record::element_history_fields)
         add_cell(element.*field.number, !std::isnan(element.*field.number), text);
     }
     text += "\n";
@@ -111,8 +109,8 @@ std::string histories_csv(const simulation::ModelRecord& model,
   return text;
 }
 
-void write_histories_csv(const std::filesystem::path& directory, const simulation::ModelRecord& model,
-                         const std::vector<simulation::HistoryRow>& rows) {
+void write_histories_csv(const std::filesystem::path& directory, const record::ModelRecord& model,
+                         const std::vector<record::HistoryRow>& rows) {
   write_file_atomically(directory / "histories.csv", histories_csv(model, rows));
 }
 

@@ -13,20 +13,19 @@ namespace keyblock::results {
 std::string csv_field(std::string_view text);
 
 /// Whether there are histories: of points or of elements.
-bool has_histories(const simulation::ModelRecord& model);
+bool has_histories(const record::ModelRecord& model);
 /// Names of the columns: `time`, then those of history_fields per point, then those of element_history_fields per element, as below.
-std::vector<std::string> history_columns(const simulation::ModelRecord& model);
+std::vector<std::string> history_columns(const record::ModelRecord& model);
 /// A row, in the order of these columns.
-std::vector<double> history_numbers(const simulation::HistoryRow& row);
+std::vector<double> history_numbers(const record::HistoryRow& row);
 
 /// One row per recorded step: `time`, then per history `NAME.ux, NAME.uy, NAME.vx, NAME.vy, NAME.sxx, NAME.syy,
 /// NAME.sxy, NAME.ax, NAME.ay` (displacement since the start, m; velocity, m/s; Cauchy stress, Pa; acceleration, m/s²); of an element
 /// `NAME.force, NAME.elongation` (N/m, m). Every number can be read back to its last bit.
-std::string histories_csv(const simulation::ModelRecord& model,
-                          const std::vector<simulation::HistoryRow>& rows);
+std::string histories_csv(const record::ModelRecord& model, const std::vector<record::HistoryRow>& rows);
 
 /// Writes DIR/histories.csv at once. Throws RunError.
-void write_histories_csv(const std::filesystem::path& directory, const simulation::ModelRecord& model,
-                         const std::vector<simulation::HistoryRow>& rows);
+void write_histories_csv(const std::filesystem::path& directory, const record::ModelRecord& model,
+                         const std::vector<record::HistoryRow>& rows);
 
 }  // namespace keyblock::results

@@ -27,7 +27,7 @@ struct Dimensions {
   Names scales;
 };
 
-std::vector<Dimensions> dimensions(const simulation::ModelRecord& model) {
+std::vector<Dimensions> dimensions(const record::ModelRecord& model) {
   const char *const frame = "frames/time", *const snapshot = "contacts/time",
                     *const contact = "contacts/contact", *const row = "histories/time",
                     *const step = "steps/time";
@@ -56,7 +56,7 @@ std::vector<Dimensions> dimensions(const simulation::ModelRecord& model) {
   for (const char* name : {"contacts/block_a", "contacts/block_b", "contacts/state", "contacts/edge_kind",
                            "contacts/edge_index"})
     all.push_back({name, {contact}});
-  for (const simulation::ContactField& field : simulation::contact_fields)
+  for (const record::ContactField& field : record::contact_fields)
     all.push_back({"contacts/" + std::string(field.name), {contact}});
   for (const char* name :
        {"model/block_name", "model/block_order", "model/block_fixed", "model/block_area",
@@ -69,7 +69,7 @@ std::vector<Dimensions> dimensions(const simulation::ModelRecord& model) {
     all.push_back({"elements/block", {"element", "end"}});
     all.push_back({"elements/ends", {frame, "element", "end", "component"}});
     all.push_back({"elements/present", {frame, "element"}});
-    for (const auto& field : simulation::element_state_fields)
+    for (const auto& field : record::element_state_fields)
       all.push_back({"elements/" + std::string(field.name), {frame, "element"}});
   }
   if (!model.element_histories.empty()) {
@@ -134,18 +134,15 @@ std::vector<Meaning> of_the_model() {
 }
 
 std::vector<Meaning> of_frames() {
-  return {{"frames/time", "s", "simulated time; static steps take none"},
-          {"frames/stage", "1", "stage, from 0"},
-          {"frames/step", "1", "step of the run"},
-          {"frames/displacement", "m", "of every display vertex since the start", {"x", "y"}},
-          {"frames/velocity", "m/s", "of the mass centre of every block", {"x", "y"}},
-          {"frames/stress", "Pa", "mean Cauchy stress of every block, tension positive", {"xx", "yy", "xy"}},
-          {"frames/status",
-           "1",
-           "of every block",
-           {},
-           names_up_to(simulation::BlockStatus::excavated, status_name)},
-          {"frames/order", "1", "order of the displacement polynomial of every block"}};
+  return {
+      {"frames/time", "s", "simulated time; static steps take none"},
+      {"frames/stage", "1", "stage, from 0"},
+      {"frames/step", "1", "step of the run"},
+      {"frames/displacement", "m", "of every display vertex since the start", {"x", "y"}},
+      {"frames/velocity", "m/s", "of the mass centre of every block", {"x", "y"}},
+      {"frames/stress", "Pa", "mean Cauchy stress of every block, tension positive", {"xx", "yy", "xy"}},
+      {"frames/status", "1", "of every block", {}, names_up_to(record::BlockStatus::excavated, status_name)},
+      {"frames/order", "1", "order of the displacement polynomial of every block"}};
 }
 
 std::vector<Meaning> of_contacts() {
@@ -161,7 +158,7 @@ std::vector<Meaning> of_contacts() {
        "1",
        "state of the contact",
        {},
-       names_up_to(simulation::ContactState::locked, contact_state_name)},
+       names_up_to(record::ContactState::locked, contact_state_name)},
       {"contacts/position", "m", "where", {"x", "y"}},
       {"contacts/normal", "1", "unit vector out of block_b", {"x", "y"}},
       {"contacts/edge_kind",
@@ -170,7 +167,7 @@ std::vector<Meaning> of_contacts() {
        {},
        names_up_to(cutting::EdgeKind::domain, edge_kind_name)},
       {"contacts/edge_index", "1", "which joint set, trace map or excavation of edge_kind"}};
-  for (const simulation::ContactField& field : simulation::contact_fields)
+  for (const record::ContactField& field : record::contact_fields)
     all.push_back({"contacts/" + std::string(field.name), field.unit, field.meaning});
   return all;
 }
@@ -180,10 +177,10 @@ std::vector<Meaning> of_rows() {
       {"histories/names", "", "names of the chosen points"},
       {"histories/time", "s", "simulated time"},
       {"histories/step", "1", "step of the run"},
-      {"histories/values", units_of(simulation::history_fields),
+      {"histories/values", units_of(record::history_fields),
        "of every chosen point: displacement, velocity, stress, and acceleration as its mean over the last "
        "step",
-       simulation::history_quantities()},
+       record::history_quantities()},
       {"steps/time", "s", "simulated time"},
       {"steps/stage", "1", "stage, from 0"},
       {"steps/step", "1", "step of the run"},
@@ -192,15 +189,15 @@ std::vector<Meaning> of_rows() {
       {"steps/step_size", "s", "smallest part of the step; static: pseudo time step"},
       {"steps/penetration", "m", "largest depth that the contact code sees"},
       {"steps/max_displacement", "m", "largest of the step"},
-      {"steps/energy", units_of(simulation::energy_fields),
-       "terms of the energy balance per metre of thickness", simulation::energy_names()},
+      {"steps/energy", units_of(record::energy_fields), "terms of the energy balance per metre of thickness",
+       record::energy_names()},
       {"steps/energy_names", "", "names of the columns of energy"},
       {"stages", "", "a JSON object per line, bytes"},
       {"run", "", "a line of JSON at the end of the run, bytes"},
       {"summary", "", "the text of summary.json, bytes"}};
 }
 
-std::vector<Meaning> of_elements(const simulation::ModelRecord& model) {
+std::vector<Meaning> of_elements(const record::ModelRecord& model) {
   if (model.elements.empty()) return {};
   std::vector<Meaning> all{{"element", "1", "number of the element"},
                            {"end", "", "of elements"},
@@ -214,23 +211,23 @@ std::vector<Meaning> of_elements(const simulation::ModelRecord& model) {
                            {"elements/block", "1", "blocks of the ends, -1: of several", {"from", "to"}},
                            {"elements/ends", "m", "ends in each frame", {"x", "y"}},
                            {"elements/present", "1", "whether it is there", {}, {"not there", "there"}}};
-  for (const auto& field : simulation::element_state_fields)
+  for (const auto& field : record::element_state_fields)
     all.push_back({"elements/" + std::string(field.name), field.unit, field.meaning});
   return all;
 }
 
-std::vector<Meaning> of_element_histories(const simulation::ModelRecord& model) {
+std::vector<Meaning> of_element_histories(const record::ModelRecord& model) {
   if (model.element_histories.empty()) return {};
   Names names;
-  for (const auto& field : simulation::element_history_fields) names.emplace_back(field.name);
+  for (const auto& field : record::element_history_fields) names.emplace_back(field.name);
   return {{"element_history", "1", "number of the history that follows an element"},
           {"element_quantity", "", "of these histories"},
           {"histories/element_names", "", "names of the histories that follow elements"},
-          {"histories/element_values", units_of(simulation::element_history_fields),
+          {"histories/element_values", units_of(record::element_history_fields),
            "of every such history; NaN where the element is not there", names}};
 }
 
-std::vector<Meaning> all_meanings(const simulation::ModelRecord& model) {
+std::vector<Meaning> all_meanings(const record::ModelRecord& model) {
   std::vector<Meaning> all;
   for (auto& meanings : {of_the_model(), of_frames(), of_contacts(), of_rows(), of_elements(model),
                          of_element_histories(model)})
@@ -240,7 +237,7 @@ std::vector<Meaning> all_meanings(const simulation::ModelRecord& model) {
 
 }  // namespace
 
-nlohmann::ordered_json dataset_names(const simulation::ModelRecord& model) {
+nlohmann::ordered_json dataset_names(const record::ModelRecord& model) {
   nlohmann::ordered_json names = nlohmann::ordered_json::object();
   for (const Meaning& meaning : all_meanings(model)) {
     if (!meaning.columns.empty()) names[meaning.dataset]["columns"] = meaning.columns;
@@ -249,7 +246,7 @@ nlohmann::ordered_json dataset_names(const simulation::ModelRecord& model) {
   return names;
 }
 
-void describe_datasets(hid_t file, const simulation::ModelRecord& model) {
+void describe_datasets(hid_t file, const record::ModelRecord& model) {
   for (const Meaning& meaning : all_meanings(model)) {
     const hdf5::Handle dataset = hdf5::open_dataset(file, meaning.dataset);
     if (!meaning.unit.empty()) hdf5::write_attribute(dataset, "units", meaning.unit);

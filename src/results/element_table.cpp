@@ -13,9 +13,9 @@ namespace keyblock::results {
 namespace {
 
 using hdf5::read_array;
-using simulation::element_state_fields;
-using simulation::ElementDescription;
-using simulation::ElementState;
+using record::element_state_fields;
+using record::ElementDescription;
+using record::ElementState;
 
 constexpr std::size_t numbers = std::size(element_state_fields);
 constexpr std::size_t of_ends = 4;  // x and y of both
@@ -30,7 +30,7 @@ hdf5::Array<T> read_of_elements(hid_t group, const char* name, std::size_t width
 
 }  // namespace
 
-void write_element_catalogue(hid_t file, const simulation::ModelRecord& model) {
+void write_element_catalogue(hid_t file, const record::ModelRecord& model) {
   const std::size_t count = model.elements.size();
   if (count == 0) return;
   std::vector<std::string> name, kind;
@@ -51,7 +51,7 @@ void write_element_catalogue(hid_t file, const simulation::ModelRecord& model) {
   hdf5::write_array<std::int32_t>(group, "block", {count, 2}, block);
 }
 
-void read_element_catalogue(hid_t file, simulation::ModelRecord& model) {
+void read_element_catalogue(hid_t file, record::ModelRecord& model) {
   const std::size_t count = model.elements.size();
   if (count == 0) return;
   const hdf5::Handle group = hdf5::open_group(file, "elements");
@@ -76,7 +76,7 @@ void read_element_catalogue(hid_t file, simulation::ModelRecord& model) {
   }
 }
 
-ElementTable::ElementTable(hid_t file, const simulation::ModelRecord& model) : count_(model.elements.size()) {
+ElementTable::ElementTable(hid_t file, const record::ModelRecord& model) : count_(model.elements.size()) {
   if (count_ == 0) return;
   group_ = hdf5::open_group(file, "elements");
   ends_ = hdf5::Column<double>(group_, "ends", {count_, 2, 2});
@@ -108,7 +108,7 @@ void ElementTable::flush() {
   present_.flush();
 }
 
-void ElementTable::read(hid_t file, std::size_t elements, std::vector<simulation::Frame>& frames) {
+void ElementTable::read(hid_t file, std::size_t elements, std::vector<record::Frame>& frames) {
   if (elements == 0) return;
   const hdf5::Handle group = hdf5::open_group(file, "elements");
   const auto ends = read_of_elements<double>(group, "ends", of_ends * elements);

@@ -8,18 +8,18 @@
 /// have it.
 namespace keyblock::results {
 
-void write_element_catalogue(hid_t file, const simulation::ModelRecord& model);
+void write_element_catalogue(hid_t file, const record::ModelRecord& model);
 /// Names and kinds are known by then; all else of model.elements is read. Throws RunError where they do not fit.
-void read_element_catalogue(hid_t file, simulation::ModelRecord& model);
+void read_element_catalogue(hid_t file, record::ModelRecord& model);
 
 class ElementTable {
  public:
   ElementTable() = default;
-  ElementTable(hid_t file, const simulation::ModelRecord& model);
-  void append(const std::vector<simulation::ElementState>& elements);
+  ElementTable(hid_t file, const record::ModelRecord& model);
+  void append(const std::vector<record::ElementState>& elements);
   void flush();
   /// Into the frames, of which those are dropped that have no row.
-  static void read(hid_t file, std::size_t elements, std::vector<simulation::Frame>& frames);
+  static void read(hid_t file, std::size_t elements, std::vector<record::Frame>& frames);
 
  private:
   std::size_t count_ = 0;

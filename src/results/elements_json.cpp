@@ -13,9 +13,9 @@
 namespace keyblock::results {
 
 using nlohmann::ordered_json;
-using simulation::element_fields;
-using simulation::element_state_fields;
-using simulation::ElementRecord;
+using record::element_fields;
+using record::element_state_fields;
+using record::ElementRecord;
 
 namespace {
 ordered_json place(Vec2 p) {
@@ -26,35 +26,35 @@ Vec2 read_place(const ordered_json& json) {
 }
 }  // namespace
 
-ordered_json element_names_json(const simulation::ModelRecord& model) {
+ordered_json element_names_json(const record::ModelRecord& model) {
   ordered_json json = ordered_json::array();
   for (const auto& e : model.elements)
     json.push_back({{"name", e.name}, {"kind", e.kind}, {"limit_n_m", number_or_null(e.limit)}});
   return json;
 }
 
-ordered_json element_histories_json(const simulation::ModelRecord& model) {
+ordered_json element_histories_json(const record::ModelRecord& model) {
   ordered_json json = ordered_json::array();
   for (const auto& h : model.element_histories) json.push_back({{"name", h.name}, {"element", h.element}});
   return json;
 }
 
-void add_element_names(const simulation::ModelRecord& model, ordered_json& json) {
+void add_element_names(const record::ModelRecord& model, ordered_json& json) {
   if (!model.elements.empty()) json["elements"] = element_names_json(model);
   if (!model.element_histories.empty()) json["element_histories"] = element_histories_json(model);
 }
 
-void read_element_names(const ordered_json& json, simulation::ModelRecord& model) {
+void read_element_names(const ordered_json& json, record::ModelRecord& model) {
   if (!json.contains("elements")) return;
   for (const ordered_json& one : json.at("elements")) {
-    simulation::ElementDescription& e = model.elements.emplace_back();
+    record::ElementDescription& e = model.elements.emplace_back();
     one.at("name").get_to(e.name);
     one.at("kind").get_to(e.kind);
   }
   if (!json.contains("element_histories")) return;
   for (const ordered_json& one : json.at("element_histories")) {
     const auto& h = model.element_histories.emplace_back(
-        simulation::ElementHistory{one.at("name").get<std::string>(), one.at("element").get<int>()});
+        record::ElementHistory{one.at("name").get<std::string>(), one.at("element").get<int>()});
     if (h.element < 0 || static_cast<std::size_t>(h.element) >= model.elements.size())
       throw RunError("a history follows an element that is not there");
   }
@@ -77,7 +77,7 @@ ordered_json elements_json(const std::vector<ElementRecord>& elements, Vec2 orig
   return json;
 }
 
-ordered_json water_json(const simulation::WaterRecord& water) {
+ordered_json water_json(const record::WaterRecord& water) {
   ordered_json forces = ordered_json::array();
   for (const auto& [name, force] : water.forces)
     forces.push_back({{"name", name}, {"force_n_m", place(force)}});
@@ -88,8 +88,8 @@ ordered_json water_json(const simulation::WaterRecord& water) {
           {"forces", std::move(forces)}};
 }
 
-simulation::WaterRecord read_water(const ordered_json& json) {
-  simulation::WaterRecord water;
+record::WaterRecord read_water(const ordered_json& json) {
+  record::WaterRecord water;
   json.at("name").get_to(water.name);
   json.at("largest_pressure_pa").get_to(water.largest_pressure);
   json.at("wet_m").get_to(water.wet);
@@ -138,17 +138,17 @@ std::string element_table(const std::vector<ElementRecord>& elements, Vec2 origi
 }
 
 std::string element_state_table(const RunData& run) {
-  const simulation::ModelRecord& model = run.model;
+  const record::ModelRecord& model = run.model;
   if (model.elements.empty()) return {};
   std::string text = "frame,time,stage,step,element,name,kind,present,from_x,from_y,to_x,to_y";
   for (const auto& field : element_state_fields) text += fmt::format(",{}", field.name);
   text += ",utilization\n";
   auto out = std::back_inserter(text);
   for (std::size_t f = 0; f < run.frames.size(); ++f) {
-    const simulation::Frame& frame = run.frames[f];
+    const record::Frame& frame = run.frames[f];
     for (std::size_t k = 0; k < frame.elements.size(); ++k) {
-      const simulation::ElementDescription& of = model.elements[k];
-      const simulation::ElementState& e = frame.elements[k];
+      const record::ElementDescription& of = model.elements[k];
+      const record::ElementState& e = frame.elements[k];
       const Vec2 from = e.from + model.origin, to = e.to + model.origin;
       fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{}", f, frame.time, frame.stage, frame.step, k,
                      csv_field(of.name), of.kind, e.present ? 1 : 0, from.x, from.y, to.x, to.y);

@@ -32,15 +32,15 @@ std::string format_name(ExportFormat wanted) {
 }
 
 std::string block_table(const RunData& data) {
-  const simulation::ModelRecord& model = data.model;
+  const record::ModelRecord& model = data.model;
   std::string text = "frame,time,stage,step,block,name,status,x,y,ux,uy,sxx,syy,sxy\n";
   auto out = std::back_inserter(text);
   std::vector<Vec2> reference;
   for (const auto& block : model.blocks) reference.push_back(model.origin + block.centroid);
   for (std::size_t f = 0; f < data.frames.size(); ++f) {
-    const simulation::Frame& frame = data.frames[f];
+    const record::Frame& frame = data.frames[f];
     for (std::size_t b = 0; b < model.blocks.size(); ++b) {
-      if (frame.status[b] == simulation::BlockStatus::excavated) continue;
+      if (frame.status[b] == record::BlockStatus::excavated) continue;
       const Vec2 u = block_displacement(model, frame, b), x = reference[b] + u;
       const auto& s = frame.stress[b];
       fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", f, frame.time, frame.stage,
@@ -51,22 +51,21 @@ std::string block_table(const RunData& data) {
   return text;
 }
 
-std::string edge_name(const simulation::ModelRecord& model, cutting::EdgeLabel label) {
+std::string edge_name(const record::ModelRecord& model, cutting::EdgeLabel label) {
   return cutting::edge_name(label, model.joint_set_names, model.trace_map_names, model.excavation_names);
 }
 
 std::string contact_table(const RunData& data) {
   std::string text = "time,stage,step,block_a,block_b,state,x,y,nx,ny";
-  for (const simulation::ContactField& field : simulation::contact_fields)
-    text += fmt::format(",{}", field.name);
+  for (const record::ContactField& field : record::contact_fields) text += fmt::format(",{}", field.name);
   text += ",edge,edge_name\n";
   auto out = std::back_inserter(text);
-  for (const simulation::ContactFrame& frame : data.contacts) {
-    for (const simulation::ContactRecord& c : frame.contacts) {
+  for (const record::ContactFrame& frame : data.contacts) {
+    for (const record::ContactRecord& c : frame.contacts) {
       const Vec2 p = data.model.origin + c.position;
       fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{}", frame.time, frame.stage, frame.step, c.block_a,
                      c.block_b, contact_state_name(c.state), p.x, p.y, c.normal.x, c.normal.y);
-      for (const simulation::ContactField& field : simulation::contact_fields) {
+      for (const record::ContactField& field : record::contact_fields) {
         text += ',';
         if (const double number = field.of(c); !std::isnan(number)) fmt::format_to(out, "{}", number);
       }
@@ -79,14 +78,13 @@ std::string contact_table(const RunData& data) {
 
 std::string step_table(const RunData& data) {
   std::string text = "time,stage,step,iterations,step_size,penetration,max_displacement,closed_contacts";
-  for (const simulation::EnergyField& field : simulation::energy_fields)
-    text += fmt::format(",{}", field.name);
+  for (const record::EnergyField& field : record::energy_fields) text += fmt::format(",{}", field.name);
   text += "\n";
   auto out = std::back_inserter(text);
-  for (const simulation::StepRow& r : data.steps) {
+  for (const record::StepRow& r : data.steps) {
     fmt::format_to(out, "{},{},{},{},{},{},{},{}", r.time, r.stage, r.step, r.iterations, r.step_size,
                    r.penetration, r.max_displacement, r.closed_contacts);
-    for (const simulation::EnergyField& field : simulation::energy_fields)
+    for (const record::EnergyField& field : record::energy_fields)
       fmt::format_to(out, ",{}", r.energy.*field.number);
     text += "\n";
   }
@@ -98,7 +96,7 @@ std::string release_table(const RunData& data) {
   std::string rows;
   auto out = std::back_inserter(rows);
   for (std::size_t k = 0; k < data.run.stages.size(); ++k) {
-    for (const simulation::ReleasePoint& p : data.run.stages[k].release) {
+    for (const record::ReleasePoint& p : data.run.stages[k].release) {
       const auto e = static_cast<std::size_t>(p.excavation);
       const std::string name = e < data.model.excavation_names.size() ? data.model.excavation_names[e] : "";
       fmt::format_to(out, "{},{},{},{}", k, p.step, csv_field(name), p.released);
@@ -122,10 +120,10 @@ ordered_json closed_ring(const Ring& ring) {
   return out;
 }
 
-std::string stage_geojson(const RunData& data, const simulation::Frame& frame) {
+std::string stage_geojson(const RunData& data, const record::Frame& frame) {
   ordered_json features = ordered_json::array();
   for (std::size_t b = 0; b < data.model.blocks.size(); ++b) {
-    if (frame.status[b] == simulation::BlockStatus::excavated) continue;
+    if (frame.status[b] == record::BlockStatus::excavated) continue;
     const Polygon polygon = block_shape(data.model, frame, b);
     ordered_json rings = ordered_json::array();
     for (std::size_t r = 0; r < polygon.ring_count(); ++r) rings.push_back(closed_ring(polygon.ring(r)));
@@ -191,12 +189,12 @@ std::vector<std::filesystem::path> export_csv(const RunData& data, FileSet& out)
 std::vector<std::filesystem::path> export_geojson(const RunData& data, FileSet& out) {
   std::vector<std::filesystem::path> files;
   for (std::size_t k = 0; k < data.run.stages.size(); ++k) {
-    const simulation::Frame* last = nullptr;
-    for (const simulation::Frame& frame : data.frames) {
+    const record::Frame* last = nullptr;
+    for (const record::Frame& frame : data.frames) {
       if (frame.stage == static_cast<int>(k)) last = &frame;
     }
     if (last == nullptr) continue;
-    const simulation::StageRecord& record = data.run.stages[k];
+    const record::StageRecord& record = data.run.stages[k];
     const std::string part = file_part(record.stage.name);
     files.push_back(out.write(fmt::format("stage_{}{}{}{}.geojson", k + 1, part.empty() ? "" : "_", part,
                                           record.interrupted ? "_unfinished" : ""),

@@ -63,7 +63,7 @@ std::vector<std::filesystem::path> write_series(const Frames& frames, const std:
 
 }  // namespace
 
-void add_vtk_moment(VtkFile& file, const simulation::ModelRecord& model, double time, int stage, long step) {
+void add_vtk_moment(VtkFile& file, const record::ModelRecord& model, double time, int stage, long step) {
   const std::vector<double> origin{model.origin.x, model.origin.y, 0.0};
   file.open("FieldData");
   file.field<double>("TimeValue", time);
@@ -81,8 +81,8 @@ void add_vtk_lines(VtkFile& file, std::span<const std::int64_t> vertices, std::s
 }
 
 std::vector<std::filesystem::path> export_vtk(const RunData& data, FileSet& out) {
-  using simulation::ContactFrame;
-  using simulation::Frame;
+  using record::ContactFrame;
+  using record::Frame;
   const auto times = series_times(data);
   VtkBlocks blocks(data.model);
   const JointLocator locator(data.model);

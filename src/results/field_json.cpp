@@ -7,7 +7,7 @@
 namespace keyblock::results {
 
 using nlohmann::ordered_json;
-using simulation::StageKind;
+using record::StageKind;
 
 namespace {
 constexpr std::pair<StageKind, const char*> kinds[] = {
@@ -24,31 +24,31 @@ std::string stage_kind_name(StageKind kind) {
 ordered_json json_of(StageKind kind) {
   return stage_kind_name(kind);
 }
-ordered_json json_of(const std::optional<simulation::StageWait>& wait) {
+ordered_json json_of(const std::optional<record::StageWait>& wait) {
   return wait_json(wait);
 }
-ordered_json json_of(const std::optional<simulation::Standing>& standing) {
+ordered_json json_of(const std::optional<record::Standing>& standing) {
   return standing_json(standing);
 }
-ordered_json json_of(const simulation::Movers& movers) {
+ordered_json json_of(const record::Movers& movers) {
   return movers_json(movers);
 }
-ordered_json json_of(const simulation::Damage& damage) {
+ordered_json json_of(const record::Damage& damage) {
   return damage_json(damage);
 }
-ordered_json json_of(const simulation::Energy& energy) {
+ordered_json json_of(const record::Energy& energy) {
   return energy_json(energy);
 }
-ordered_json json_of(const simulation::OpenCloseStatistics& statistics) {
+ordered_json json_of(const record::OpenCloseStatistics& statistics) {
   return open_close_json(statistics);
 }
-ordered_json json_of(const std::vector<simulation::MovingBlock>& moving) {
+ordered_json json_of(const std::vector<record::MovingBlock>& moving) {
   return moving_json(moving);
 }
-ordered_json json_of(const std::vector<simulation::FallenBlock>& fallen) {
+ordered_json json_of(const std::vector<record::FallenBlock>& fallen) {
   return fallen_json(fallen);
 }
-ordered_json json_of(const std::vector<simulation::ReleasePoint>& release) {
+ordered_json json_of(const std::vector<record::ReleasePoint>& release) {
   return release_json(release, {});
 }
 ordered_json json_of(const std::vector<Vec2>& points) {
@@ -62,31 +62,31 @@ void read(const ordered_json& json, StageKind& value) {
   for (const auto& [kind, name] : kinds)
     if (json == name) value = kind;
 }
-void read(const ordered_json& json, std::optional<simulation::StageWait>& value) {
+void read(const ordered_json& json, std::optional<record::StageWait>& value) {
   value = read_wait(json);
 }
-void read(const ordered_json& json, std::optional<simulation::Standing>& value) {
+void read(const ordered_json& json, std::optional<record::Standing>& value) {
   value = read_standing(json);
 }
-void read(const ordered_json& json, simulation::Movers& value) {
+void read(const ordered_json& json, record::Movers& value) {
   value = read_movers(json);
 }
-void read(const ordered_json& json, simulation::Damage& value) {
+void read(const ordered_json& json, record::Damage& value) {
   value = read_damage(json);
 }
-void read(const ordered_json& json, simulation::Energy& value) {
+void read(const ordered_json& json, record::Energy& value) {
   value = read_energy(json);
 }
-void read(const ordered_json& json, simulation::OpenCloseStatistics& value) {
+void read(const ordered_json& json, record::OpenCloseStatistics& value) {
   value = read_open_close(json);
 }
-void read(const ordered_json& json, std::vector<simulation::MovingBlock>& value) {
+void read(const ordered_json& json, std::vector<record::MovingBlock>& value) {
   value = read_moving(json);
 }
-void read(const ordered_json& json, std::vector<simulation::FallenBlock>& value) {
+void read(const ordered_json& json, std::vector<record::FallenBlock>& value) {
   value = read_fallen(json);
 }
-void read(const ordered_json& json, std::vector<simulation::ReleasePoint>& value) {
+void read(const ordered_json& json, std::vector<record::ReleasePoint>& value) {
   value = read_release(json);
 }
 void read(const ordered_json& json, std::vector<Vec2>& value) {

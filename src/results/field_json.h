@@ -10,16 +10,16 @@
 /// Values of the fields that tables of records describe, to JSON and back. For the sources of this folder: the header is heavy.
 namespace keyblock::results {
 
-nlohmann::ordered_json json_of(simulation::StageKind kind);
-nlohmann::ordered_json json_of(const std::optional<simulation::StageWait>& wait);
-nlohmann::ordered_json json_of(const std::optional<simulation::Standing>& standing);
-nlohmann::ordered_json json_of(const simulation::Movers& movers);
-nlohmann::ordered_json json_of(const simulation::Damage& damage);
-nlohmann::ordered_json json_of(const simulation::Energy& energy);
-nlohmann::ordered_json json_of(const simulation::OpenCloseStatistics& statistics);
-nlohmann::ordered_json json_of(const std::vector<simulation::MovingBlock>& moving);
-nlohmann::ordered_json json_of(const std::vector<simulation::FallenBlock>& fallen);
-nlohmann::ordered_json json_of(const std::vector<simulation::ReleasePoint>& release);
+nlohmann::ordered_json json_of(record::StageKind kind);
+nlohmann::ordered_json json_of(const std::optional<record::StageWait>& wait);
+nlohmann::ordered_json json_of(const std::optional<record::Standing>& standing);
+nlohmann::ordered_json json_of(const record::Movers& movers);
+nlohmann::ordered_json json_of(const record::Damage& damage);
+nlohmann::ordered_json json_of(const record::Energy& energy);
+nlohmann::ordered_json json_of(const record::OpenCloseStatistics& statistics);
+nlohmann::ordered_json json_of(const std::vector<record::MovingBlock>& moving);
+nlohmann::ordered_json json_of(const std::vector<record::FallenBlock>& fallen);
+nlohmann::ordered_json json_of(const std::vector<record::ReleasePoint>& release);
 nlohmann::ordered_json json_of(const std::vector<Vec2>& points);
 template <class T>
 nlohmann::ordered_json json_of(const std::optional<T>& value) {
@@ -31,16 +31,16 @@ nlohmann::ordered_json json_of(const T& value) {
 }
 
 void read(const nlohmann::ordered_json& json, double& value);
-void read(const nlohmann::ordered_json& json, simulation::StageKind& value);
-void read(const nlohmann::ordered_json& json, std::optional<simulation::StageWait>& value);
-void read(const nlohmann::ordered_json& json, std::optional<simulation::Standing>& value);
-void read(const nlohmann::ordered_json& json, simulation::Movers& value);
-void read(const nlohmann::ordered_json& json, simulation::Damage& value);
-void read(const nlohmann::ordered_json& json, simulation::Energy& value);
-void read(const nlohmann::ordered_json& json, simulation::OpenCloseStatistics& value);
-void read(const nlohmann::ordered_json& json, std::vector<simulation::MovingBlock>& value);
-void read(const nlohmann::ordered_json& json, std::vector<simulation::FallenBlock>& value);
-void read(const nlohmann::ordered_json& json, std::vector<simulation::ReleasePoint>& value);
+void read(const nlohmann::ordered_json& json, record::StageKind& value);
+void read(const nlohmann::ordered_json& json, std::optional<record::StageWait>& value);
+void read(const nlohmann::ordered_json& json, std::optional<record::Standing>& value);
+void read(const nlohmann::ordered_json& json, record::Movers& value);
+void read(const nlohmann::ordered_json& json, record::Damage& value);
+void read(const nlohmann::ordered_json& json, record::Energy& value);
+void read(const nlohmann::ordered_json& json, record::OpenCloseStatistics& value);
+void read(const nlohmann::ordered_json& json, std::vector<record::MovingBlock>& value);
+void read(const nlohmann::ordered_json& json, std::vector<record::FallenBlock>& value);
+void read(const nlohmann::ordered_json& json, std::vector<record::ReleasePoint>& value);
 void read(const nlohmann::ordered_json& json, std::vector<double>& value);
 void read(const nlohmann::ordered_json& json, std::vector<Vec2>& value);
 template <class T>

@@ -14,13 +14,13 @@ using hdf5::Array;
 using hdf5::read_array;
 using hdf5::read_column;
 
-constexpr std::size_t history_values = std::size(simulation::history_fields);
-constexpr std::size_t element_values = simulation::element_history_fields.size();
+constexpr std::size_t history_values = std::size(record::history_fields);
+constexpr std::size_t element_values = record::element_history_fields.size();
 constexpr std::size_t first_history_values = 7;  // of results of earlier versions
 
 }  // namespace
 
-HistoryTable::HistoryTable(hid_t file, const simulation::ModelRecord& model)
+HistoryTable::HistoryTable(hid_t file, const record::ModelRecord& model)
     : points_(model.history_names.size()),
       elements_(model.element_histories.size()),
       group_(hdf5::create_group(file, "histories")),
@@ -30,18 +30,18 @@ HistoryTable::HistoryTable(hid_t file, const simulation::ModelRecord& model)
   hdf5::write_strings(group_, "names", model.history_names);
   if (elements_ == 0) return;
   std::vector<std::string> names;
-  for (const simulation::ElementHistory& history : model.element_histories) names.push_back(history.name);
+  for (const record::ElementHistory& history : model.element_histories) names.push_back(history.name);
   hdf5::write_strings(group_, "element_names", names);
   element_values_ = hdf5::Column<double>(group_, "element_values", {elements_, element_values});
 }
 
-void HistoryTable::append(const simulation::HistoryRow& row) {
+void HistoryTable::append(const record::HistoryRow& row) {
   if (row.points.size() != points_ || row.elements.size() != elements_)
     throw std::invalid_argument("a history row of another model");
   values_.append_row(flat(reinterpret_cast<const double*>(row.points.data()), history_values * points_));
   std::vector<double> of_elements;
-  for (const simulation::ElementState& element : row.elements) {
-    for (const auto& field : simulation::element_history_fields) of_elements.push_back(element.*field.number);
+  for (const record::ElementState& element : row.elements) {
+    for (const auto& field : record::element_history_fields) of_elements.push_back(element.*field.number);
   }
   if (elements_ > 0) element_values_.append(of_elements);
   step_.append(row.step);
@@ -58,23 +58,23 @@ void HistoryTable::flush() {
 namespace {
 
 /// The next point of a file that has so many quantities of each; the others are not known.
-simulation::HistoryRow::Point next_point(const double*& next, std::size_t quantities) {
-  simulation::HistoryRow::Point point;
+record::HistoryRow::Point next_point(const double*& next, std::size_t quantities) {
+  record::HistoryRow::Point point;
   for (std::size_t q = 0; q < history_values; ++q)
-    point.*simulation::history_fields[q].member = q < quantities ? *next++ : std::nan("");
+    point.*record::history_fields[q].member = q < quantities ? *next++ : std::nan("");
   return point;
 }
 
-simulation::ElementState next_element(const double*& next) {
-  simulation::ElementState element;
-  for (const auto& field : simulation::element_history_fields) element.*field.number = *next++;
+record::ElementState next_element(const double*& next) {
+  record::ElementState element;
+  for (const auto& field : record::element_history_fields) element.*field.number = *next++;
   element.present = !std::isnan(element.force);
   return element;
 }
 
 }  // namespace
 
-std::vector<simulation::HistoryRow> HistoryTable::read(hid_t file) {
+std::vector<record::HistoryRow> HistoryTable::read(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "histories");
   const auto time = read_column<double>(group, "time"), values = read_array<double>(group, "values");
   const auto step = read_column<std::int64_t>(group, "step");
@@ -85,7 +85,7 @@ std::vector<simulation::HistoryRow> HistoryTable::read(hid_t file) {
   const auto elements = of_elements ? read_array<double>(group, "element_values") : Array<double>{};
   require(!of_elements || (elements.shape.size() == 3 && elements.shape[2] == element_values),
           "histories/element_values");
-  std::vector<simulation::HistoryRow> rows(
+  std::vector<record::HistoryRow> rows(
       common_rows(time, {values.rows(), step.rows(), of_elements ? elements.rows() : values.rows()}));
   const double *next = values.values.data(), *of_element = elements.values.data();
   for (std::size_t k = 0; k < rows.size(); ++k) {

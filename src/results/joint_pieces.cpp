@@ -7,7 +7,7 @@
 
 namespace keyblock::results {
 
-using simulation::ContactRecord;
+using record::ContactRecord;
 
 namespace {
 
@@ -19,8 +19,7 @@ constexpr double along_sine = 0.3;
 
 }  // namespace
 
-JointLocator::JointLocator(const simulation::ModelRecord& model)
-    : model_(model), chains_(model.blocks.size()) {
+JointLocator::JointLocator(const record::ModelRecord& model) : model_(model), chains_(model.blocks.size()) {
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const auto& start = model.blocks[b].ring_start;
     for (std::size_t r = 0; r + 1 < start.size(); ++r) {

@@ -16,7 +16,7 @@ struct JointPiece {
   float from = 0.0F, to = 1.0F;
   float slip = 0.0F;  ///< m, without sign
   float gap = 0.0F;   ///< m
-  simulation::ContactState state = simulation::ContactState::open;
+  record::ContactState state = record::ContactState::open;
   float lost = 0.0F;      ///< share of strength: 1 − ContactRecord::strength_left
   float pressure = 0.0F;  ///< Pa, of water
 };
@@ -26,16 +26,16 @@ struct JointPiece {
 /// contact, and shifted where it would reach over an end of the edge.
 class JointLocator {
  public:
-  explicit JointLocator(const simulation::ModelRecord& model);
+  explicit JointLocator(const record::ModelRecord& model);
 
   /// From where to where that stretch reaches, m, measured from the contact along perpendicular(normal): that is how
   /// the ring of block_b runs.
-  [[nodiscard]] std::pair<double, double> reach(const simulation::ContactRecord& contact,
+  [[nodiscard]] std::pair<double, double> reach(const record::ContactRecord& contact,
                                                 std::span<const std::array<float, 2>> displacement) const;
 
   /// Appends the pieces of all contacts of one snapshot; `displacement` of all display vertices at that
   /// moment.
-  void locate(std::span<const simulation::ContactRecord> contacts,
+  void locate(std::span<const record::ContactRecord> contacts,
               std::span<const std::array<float, 2>> displacement, std::vector<JointPiece>& pieces) const;
 
  private:
@@ -58,14 +58,14 @@ class JointLocator {
   using Displacement = std::span<const std::array<float, 2>>;
 
   [[nodiscard]] Vec2 position(std::uint32_t vertex, Displacement displacement) const;
-  [[nodiscard]] Foot foot_of(const simulation::ContactRecord& contact, Displacement displacement) const;
+  [[nodiscard]] Foot foot_of(const record::ContactRecord& contact, Displacement displacement) const;
   /// Where block_a lies along the edge, seen from the contact: +1 ahead in the direction of the unit vector `along`,
   /// −1 behind, 0 both or neither.
-  [[nodiscard]] double side_of(const simulation::ContactRecord& contact, Vec2 along,
+  [[nodiscard]] double side_of(const record::ContactRecord& contact, Vec2 along,
                                Displacement displacement) const;
-  [[nodiscard]] Stretch stretch(const simulation::ContactRecord& contact, Displacement displacement) const;
+  [[nodiscard]] Stretch stretch(const record::ContactRecord& contact, Displacement displacement) const;
   void add_ring(std::span<const std::uint32_t> ring, std::vector<Chain>& chains) const;
-  const simulation::ModelRecord& model_;
+  const record::ModelRecord& model_;
   std::vector<std::vector<Chain>> chains_;  ///< by block
 };
 

@@ -42,20 +42,20 @@ ordered_json number_or_null(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json();
 }
 
-ordered_json damage_json(const simulation::Damage& damage) {
+ordered_json damage_json(const record::Damage& damage) {
   ordered_json json;
-  simulation::for_damage_fields([&](const auto& field) { json[field.name] = damage.*field.number; });
+  record::for_damage_fields([&](const auto& field) { json[field.name] = damage.*field.number; });
   return json;
 }
 
 ordered_json damage_measures_json() {
-  constexpr std::pair<simulation::DamageTable, const char*> tables[] = {
-      {simulation::DamageTable::none, nullptr},
-      {simulation::DamageTable::rock, "rock"},
-      {simulation::DamageTable::joints, "joints"},
-      {simulation::DamageTable::elements, "elements"}};
+  constexpr std::pair<record::DamageTable, const char*> tables[] = {
+      {record::DamageTable::none, nullptr},
+      {record::DamageTable::rock, "rock"},
+      {record::DamageTable::joints, "joints"},
+      {record::DamageTable::elements, "elements"}};
   ordered_json all = ordered_json::array();
-  simulation::for_damage_fields([&](const auto& field) {
+  record::for_damage_fields([&](const auto& field) {
     const char* table = tables[static_cast<std::size_t>(field.column.table)].second;
     if (table == nullptr) return;
     all.push_back({{"name", field.name},
@@ -69,20 +69,20 @@ ordered_json damage_measures_json() {
   return all;
 }
 
-simulation::Damage read_damage(const ordered_json& json) {
-  simulation::Damage damage;
+record::Damage read_damage(const ordered_json& json) {
+  record::Damage damage;
   // Files of earlier versions have fewer.
-  for (const auto& field : simulation::damage_counts)
+  for (const auto& field : record::damage_counts)
     if (json.contains(field.name)) json.at(field.name).get_to(damage.*field.number);
-  for (const auto& field : simulation::damage_fields)
+  for (const auto& field : record::damage_fields)
     damage.*field.number = json.contains(field.name) ? number(json.at(field.name)) : std::nan("");
   return damage;
 }
 
-ordered_json fallen_json(const std::vector<simulation::FallenBlock>& fallen) {
+ordered_json fallen_json(const std::vector<record::FallenBlock>& fallen) {
   ordered_json json = ordered_json::array();
   for (const auto& f : fallen) {
-    const char* part = simulation::wall_part_name(f.part);
+    const char* part = record::wall_part_name(f.part);
     json.push_back({{"block", f.block},
                     {"area_m2", f.area},
                     {"weight_n_m", f.weight},
@@ -92,31 +92,31 @@ ordered_json fallen_json(const std::vector<simulation::FallenBlock>& fallen) {
   return json;
 }
 
-std::vector<simulation::FallenBlock> read_fallen(const ordered_json& json) {
-  std::vector<simulation::FallenBlock> fallen;
+std::vector<record::FallenBlock> read_fallen(const ordered_json& json) {
+  std::vector<record::FallenBlock> fallen;
   for (const auto& f : json) {
     const ordered_json& part = f.at("wall");
     fallen.push_back(
         {f.at("block").get<int>(), number(f.at("area_m2")), number(f.at("weight_n_m")),
          number(f.at("depth_m")),
-         part.is_null() ? simulation::WallPart::none : simulation::wall_part_of(part.get<std::string>())});
+         part.is_null() ? record::WallPart::none : record::wall_part_of(part.get<std::string>())});
   }
   return fallen;
 }
 
-ordered_json wait_json(const std::optional<simulation::StageWait>& wait) {
+ordered_json wait_json(const std::optional<record::StageWait>& wait) {
   if (!wait) return nullptr;
   return {{"what", wait->what}, {"until_s", wait->until}};
 }
 
-std::optional<simulation::StageWait> read_wait(const ordered_json& json) {
+std::optional<record::StageWait> read_wait(const ordered_json& json) {
   if (json.is_null()) return std::nullopt;
-  return simulation::StageWait{number(json.at("until_s")), json.at("what").get<std::string>()};
+  return record::StageWait{number(json.at("until_s")), json.at("what").get<std::string>()};
 }
 
-ordered_json planes_json(const std::vector<simulation::PlaneRecord>& planes, Vec2 origin) {
+ordered_json planes_json(const std::vector<record::PlaneRecord>& planes, Vec2 origin) {
   ordered_json json = ordered_json::array();
-  for (const simulation::PlaneRecord& p : planes)
+  for (const record::PlaneRecord& p : planes)
     json.push_back({{"joint", p.joint},
                     {"x", p.x + origin.x},
                     {"height_m", p.height + origin.y},
@@ -130,8 +130,8 @@ ordered_json planes_json(const std::vector<simulation::PlaneRecord>& planes, Vec
   return json;
 }
 
-std::vector<simulation::PlaneRecord> read_planes(const ordered_json& json) {
-  std::vector<simulation::PlaneRecord> planes;
+std::vector<record::PlaneRecord> read_planes(const ordered_json& json) {
+  std::vector<record::PlaneRecord> planes;
   for (const ordered_json& p : json)
     planes.push_back({.joint = p.at("joint").get<std::string>(),
                       .x = p.at("x").get<double>(),
@@ -146,17 +146,17 @@ std::vector<simulation::PlaneRecord> read_planes(const ordered_json& json) {
   return planes;
 }
 
-ordered_json standing_json(const std::optional<simulation::Standing>& standing) {
-  return standing ? ordered_json(simulation::standing_name(*standing)) : ordered_json();
+ordered_json standing_json(const std::optional<record::Standing>& standing) {
+  return standing ? ordered_json(record::standing_name(*standing)) : ordered_json();
 }
 
-std::optional<simulation::Standing> read_standing(const ordered_json& json) {
-  for (const simulation::StandingWord& word : simulation::standing_words())
+std::optional<record::Standing> read_standing(const ordered_json& json) {
+  for (const record::StandingWord& word : record::standing_words())
     if (json == word.name) return word.standing;
   return std::nullopt;
 }
 
-ordered_json movers_json(const simulation::Movers& movers) {
+ordered_json movers_json(const record::Movers& movers) {
   return {{"blocks", movers.blocks},
           {"weight_n_m", movers.weight},
           {"heaviest", movers.heaviest < 0 ? ordered_json() : ordered_json(movers.heaviest)},
@@ -164,42 +164,41 @@ ordered_json movers_json(const simulation::Movers& movers) {
           {"way_m", movers.way}};
 }
 
-simulation::Movers read_movers(const ordered_json& json) {
+record::Movers read_movers(const ordered_json& json) {
   const ordered_json& heaviest = json.at("heaviest");
   return {json.at("blocks").get<int>(), heaviest.is_null() ? -1 : heaviest.get<int>(),
           number(json.at("weight_n_m")), number(json.at("heaviest_weight_n_m")), number(json.at("way_m"))};
 }
 
-ordered_json energy_json(const simulation::Energy& energy) {
+ordered_json energy_json(const record::Energy& energy) {
   ordered_json json;
-  for (const simulation::EnergyField& field : simulation::energy_fields)
-    json[field.name] = energy.*field.number;
+  for (const record::EnergyField& field : record::energy_fields) json[field.name] = energy.*field.number;
   return json;
 }
 
-simulation::Energy read_energy(const ordered_json& json) {
-  simulation::Energy energy;
-  for (const simulation::EnergyField& field : simulation::energy_fields)
+record::Energy read_energy(const ordered_json& json) {
+  record::Energy energy;
+  for (const record::EnergyField& field : record::energy_fields)
     if (!field.is_late || json.contains(field.name)) energy.*field.number = number(json.at(field.name));
   return energy;
 }
 
-ordered_json moving_json(const std::vector<simulation::MovingBlock>& moving) {
+ordered_json moving_json(const std::vector<record::MovingBlock>& moving) {
   ordered_json json = ordered_json::array();
   for (const auto& m : moving)
     json.push_back({{"block", m.block}, {"carried", m.carried}, {"group", m.group}});
   return json;
 }
 
-ordered_json movements_json(const simulation::StageRecord& stage) {
+ordered_json movements_json(const record::StageRecord& stage) {
   ordered_json json = moving_json(stage.moving);
   for (std::size_t k = 0; k < stage.moving.size(); ++k)
-    json[k]["movement"] = simulation::movement_name(simulation::movement_of(stage, k));
+    json[k]["movement"] = record::movement_name(record::movement_of(stage, k));
   return json;
 }
 
-std::vector<simulation::MovingBlock> read_moving(const ordered_json& json) {
-  std::vector<simulation::MovingBlock> moving;
+std::vector<record::MovingBlock> read_moving(const ordered_json& json) {
+  std::vector<record::MovingBlock> moving;
   for (const auto& m : json) {
     const int block = m.at("block").get<int>();
     moving.push_back(
@@ -208,10 +207,10 @@ std::vector<simulation::MovingBlock> read_moving(const ordered_json& json) {
   return moving;
 }
 
-ordered_json release_json(const std::vector<simulation::ReleasePoint>& points,
+ordered_json release_json(const std::vector<record::ReleasePoint>& points,
                           const std::vector<std::string>& excavations) {
   ordered_json list = ordered_json::array();
-  for (const simulation::ReleasePoint& p : points) {
+  for (const record::ReleasePoint& p : points) {
     const auto e = static_cast<std::size_t>(p.excavation);
     const ordered_json excavation =
         e < excavations.size() ? ordered_json(excavations[e]) : ordered_json(p.excavation);
@@ -225,23 +224,23 @@ ordered_json release_json(const std::vector<simulation::ReleasePoint>& points,
   return list;
 }
 
-ordered_json open_close_json(const simulation::OpenCloseStatistics& statistics) {
+ordered_json open_close_json(const record::OpenCloseStatistics& statistics) {
   return {{"mean_iterations", statistics.mean_iterations},
           {"max_iterations", statistics.max_iterations},
           {"retried_steps", statistics.retried_steps},
           {"unconverged_steps", statistics.unconverged_steps}};
 }
 
-std::vector<simulation::ReleasePoint> read_release(const ordered_json& json) {
-  std::vector<simulation::ReleasePoint> points;
+std::vector<record::ReleasePoint> read_release(const ordered_json& json) {
+  std::vector<record::ReleasePoint> points;
   for (const auto& p : json)
     points.push_back({p.at("step").get<long>(), number(p.at("released")), number(p.at("crown_m")),
                       number(p.at("springline_m")), number(p.at("mean_m")), p.at("excavation").get<int>()});
   return points;
 }
 
-simulation::OpenCloseStatistics read_open_close(const ordered_json& json) {
-  simulation::OpenCloseStatistics statistics;
+record::OpenCloseStatistics read_open_close(const ordered_json& json) {
+  record::OpenCloseStatistics statistics;
   statistics.mean_iterations = number(json.at("mean_iterations"));
   json.at("max_iterations").get_to(statistics.max_iterations);
   json.at("retried_steps").get_to(statistics.retried_steps);
@@ -262,7 +261,7 @@ std::vector<std::pair<std::string, std::string>> read_ground(const ordered_json&
   return ground;
 }
 
-ordered_json overlap_place_json(const simulation::OverlapRecord& overlap, Vec2 origin) {
+ordered_json overlap_place_json(const record::OverlapRecord& overlap, Vec2 origin) {
   if (overlap.block_a < 0) return nullptr;
   const Vec2 where = origin + overlap.where;
   return {{"blocks", {overlap.block_a, overlap.block_b}},
@@ -273,20 +272,20 @@ ordered_json overlap_place_json(const simulation::OverlapRecord& overlap, Vec2 o
 }
 
 /// A distance and its place under NAME_m and NAME_at.
-static void add_place(ordered_json& json, const std::string& name, const simulation::OverlapRecord& place,
+static void add_place(ordered_json& json, const std::string& name, const record::OverlapRecord& place,
                       Vec2 origin) {
   json[name + "_m"] = place.depth;
   json[name + "_at"] = overlap_place_json(place, origin);
 }
 
-static simulation::OverlapRecord read_place(const ordered_json& json, const std::string& name) {
-  simulation::OverlapRecord place;
+static record::OverlapRecord read_place(const ordered_json& json, const std::string& name) {
+  record::OverlapRecord place;
   place.depth = number(json.at(name + "_m"));
   read_overlap_place(json.at(name + "_at"), place);
   return place;
 }
 
-ordered_json contact_checks_json(const simulation::ContactChecks& vertices, Vec2 origin) {
+ordered_json contact_checks_json(const record::ContactChecks& vertices, Vec2 origin) {
   ordered_json json{{"across_gaps", vertices.across_gaps}};
   add_place(json, "farthest", vertices.farthest, origin);
   add_place(json, "deepest", vertices.deepest, origin);
@@ -294,8 +293,8 @@ ordered_json contact_checks_json(const simulation::ContactChecks& vertices, Vec2
   return json;
 }
 
-simulation::ContactChecks read_contact_checks(const ordered_json& json) {
-  simulation::ContactChecks vertices;
+record::ContactChecks read_contact_checks(const ordered_json& json) {
+  record::ContactChecks vertices;
   json.at("across_gaps").get_to(vertices.across_gaps);
   vertices.farthest = read_place(json, "farthest");
   vertices.deepest = read_place(json, "deepest");
@@ -303,7 +302,7 @@ simulation::ContactChecks read_contact_checks(const ordered_json& json) {
   return vertices;
 }
 
-void read_overlap_place(const ordered_json& json, simulation::OverlapRecord& overlap) {
+void read_overlap_place(const ordered_json& json, record::OverlapRecord& overlap) {
   if (json.is_null()) return;
   json.at("blocks").at(0).get_to(overlap.block_a);
   json.at("blocks").at(1).get_to(overlap.block_b);

@@ -64,7 +64,7 @@ Lists read_lists(hid_t group, const std::string& start, const std::string& value
 }
 
 // Whether everything that is numbered is there.
-void check_places(const simulation::ModelRecord& model) {
+void check_places(const record::ModelRecord& model) {
   constexpr int least_vertices = 3;  // of a ring
   if (model.edge_label.size() != model.vertices.size())
     throw RunError("model/edge_kind and model/vertices differ in length");
@@ -90,7 +90,7 @@ void check_places(const simulation::ModelRecord& model) {
 namespace {
 
 // All texts, for the readers of keyblock: with a checksum.
-void write_texts(hid_t file, const simulation::ModelRecord& model) {
+void write_texts(hid_t file, const record::ModelRecord& model) {
   nlohmann::ordered_json texts{{"scenario", model.scenario}, {"record", model_json(model)}};
   for (const auto& block : model.blocks) texts["block_names"].push_back(block.name);
   texts["history_names"] = model.history_names;
@@ -99,7 +99,7 @@ void write_texts(hid_t file, const simulation::ModelRecord& model) {
     texts["element_kinds"].push_back(element.kind);
   }
   for (const auto& history : model.element_histories) texts["element_history_names"].push_back(history.name);
-  texts["energy_names"] = simulation::energy_names();
+  texts["energy_names"] = record::energy_names();
   texts["meanings"] = dataset_names(model);
   TextColumn column(file, "texts");
   column.append(texts.dump());
@@ -107,7 +107,7 @@ void write_texts(hid_t file, const simulation::ModelRecord& model) {
 }
 
 // Dimensions that several groups have.
-void write_scales(hid_t file, const simulation::ModelRecord& model) {
+void write_scales(hid_t file, const record::ModelRecord& model) {
   const auto numbered = [&](const char* name, std::size_t count) {
     std::vector<std::int32_t> numbers(count);
     std::iota(numbers.begin(), numbers.end(), 0);
@@ -125,12 +125,12 @@ void write_scales(hid_t file, const simulation::ModelRecord& model) {
   };
   named("component", {"x", "y"});
   named("stress_component", {"xx", "yy", "xy"});
-  named("quantity", simulation::history_quantities());
-  named("energy_term", simulation::energy_names());
+  named("quantity", record::history_quantities());
+  named("energy_term", record::energy_names());
   if (!model.elements.empty()) named("end", {"from", "to"});
   if (!model.element_histories.empty()) {
     std::vector<std::string> quantities;
-    for (const auto& field : simulation::element_history_fields) quantities.emplace_back(field.name);
+    for (const auto& field : record::element_history_fields) quantities.emplace_back(field.name);
     named("element_quantity", quantities);
   }
 }
@@ -162,7 +162,7 @@ Texts read_texts(hid_t file, hid_t group) {
 
 }  // namespace
 
-void write_model(hid_t file, const simulation::ModelRecord& model) {
+void write_model(hid_t file, const record::ModelRecord& model) {
   hdf5::write_attribute(file, "format", std::string(result_format));
   hdf5::write_attribute<std::int32_t>(file, "format_version", result_format_version);
   hdf5::write_attribute(file, "title", model.title);
@@ -218,8 +218,8 @@ void write_model(hid_t file, const simulation::ModelRecord& model) {
   write_element_catalogue(file, model);
 }
 
-simulation::ModelRecord read_model(hid_t file) {
-  simulation::ModelRecord model;
+record::ModelRecord read_model(hid_t file) {
+  record::ModelRecord model;
   const hdf5::Handle group = hdf5::open_group(file, "model");
   const Texts texts = read_texts(file, group);
   read_model_json(texts.record, model);

@@ -40,7 +40,7 @@ auto parsed(const std::string& text, const Parse& parse) {
 
 }  // namespace
 
-std::string model_json(const simulation::ModelRecord& model) {
+std::string model_json(const record::ModelRecord& model) {
   ordered_json outlines = ordered_json::array();
   for (const auto& outline : model.excavation_outlines) outlines.push_back(points_json(outline));
   ordered_json json{{"title", model.title},
@@ -68,7 +68,7 @@ std::string model_json(const simulation::ModelRecord& model) {
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-void read_model_json(const std::string& text, simulation::ModelRecord& model) {
+void read_model_json(const std::string& text, record::ModelRecord& model) {
   parsed(text, [&](const ordered_json& json) {
     json.at("title").get_to(model.title);
     json.at("version").get_to(model.version);
@@ -101,9 +101,9 @@ void read_model_json(const std::string& text, simulation::ModelRecord& model) {
   });
 }
 
-std::string stage_json(int index, const simulation::StageRecord& stage, bool ended) {
+std::string stage_json(int index, const record::StageRecord& stage, bool ended) {
   ordered_json json{{"index", index}, {"ended", ended}};
-  json.update(stage_fields_json(stage, simulation::RecordFile::result));
+  json.update(stage_fields_json(stage, record::RecordFile::result));
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
@@ -117,16 +117,16 @@ StageLine read_stage_json(const std::string& text) {
   });
 }
 
-ordered_json run_fields_json(const simulation::RunRecord& run, simulation::RecordFile file) {
+ordered_json run_fields_json(const record::RunRecord& run, record::RecordFile file) {
   ordered_json json;
-  simulation::visit_run(run, [&](const simulation::RunField& field, const auto& value) {
+  record::visit_run(run, [&](const record::RunField& field, const auto& value) {
     if (field.file <= file) json[field.name] = json_of(value);
   });
   return json;
 }
 
-std::string run_json(const simulation::RunRecord& run) {
-  ordered_json json = run_fields_json(run, simulation::RecordFile::result);
+std::string run_json(const record::RunRecord& run) {
+  ordered_json json = run_fields_json(run, record::RecordFile::result);
   json["max_overlap_at"] = overlap_place_json(run.max_overlap, {});
   json["contact_checks"] = contact_checks_json(run.contact_checks, {});
   json["made_share"] = run.made.share();
@@ -136,11 +136,11 @@ std::string run_json(const simulation::RunRecord& run) {
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-simulation::RunRecord read_run_json(const std::string& text) {
+record::RunRecord read_run_json(const std::string& text) {
   return parsed(text, [](const ordered_json& json) {
-    simulation::RunRecord run;
-    simulation::visit_run(
-        run, [&](const simulation::RunField& field, auto& value) { read_field(json, field, value); });
+    record::RunRecord run;
+    record::visit_run(run,
+                      [&](const record::RunField& field, auto& value) { read_field(json, field, value); });
     // Files of earlier versions do not have these.
     if (json.contains("max_overlap_at")) read_overlap_place(json.at("max_overlap_at"), run.max_overlap);
     if (json.contains("contact_checks")) run.contact_checks = read_contact_checks(json.at("contact_checks"));

@@ -78,29 +78,29 @@ auto with_file(const std::filesystem::path& directory, const Read& read) {
   }
 }
 
-simulation::Damage unknown_damage() {
-  simulation::Damage damage;
-  for (const auto& field : simulation::damage_fields) damage.*field.number = std::nan("");
+record::Damage unknown_damage() {
+  record::Damage damage;
+  for (const auto& field : record::damage_fields) damage.*field.number = std::nan("");
   return damage;
 }
 
 // What of the measures the statuses of blocks tell.
-simulation::Damage damage_of(const simulation::ModelRecord& model, const simulation::Frame& frame) {
-  simulation::Damage damage = unknown_damage();
+record::Damage damage_of(const record::ModelRecord& model, const record::Frame& frame) {
+  record::Damage damage = unknown_damage();
   damage.fallen_area = damage.loosened_area = 0.0;
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     if (model.blocks[b].fixed) continue;
-    if (frame.status[b] == simulation::BlockStatus::fallen) {
+    if (frame.status[b] == record::BlockStatus::fallen) {
       ++damage.fallen_blocks;
       damage.fallen_area += model.blocks[b].area;
     }
-    if (frame.status[b] == simulation::BlockStatus::loosened) damage.loosened_area += model.blocks[b].area;
+    if (frame.status[b] == record::BlockStatus::loosened) damage.loosened_area += model.blocks[b].area;
   }
   return damage;
 }
 
 // The stage a run was killed in, as far as its rows tell.
-void complete_killed_stage(const RunData& data, int index, simulation::StageRecord& stage) {
+void complete_killed_stage(const RunData& data, int index, record::StageRecord& stage) {
   double time = stage.start_time;
   long first = 0, last = 0;
   const auto see = [&](const auto& rows) {
@@ -118,10 +118,10 @@ void complete_killed_stage(const RunData& data, int index, simulation::StageReco
   stage.steps = std::max(stage.steps, last - first);
   stage.wall_time = stage.worst_residual_ratio = stage.largest_speed = std::nan("");
   // Files of version 0.1 tell of the motion at the end alone.
-  if (stage.motion_time.empty() && stage.stage.kind == simulation::StageKind::shake)
+  if (stage.motion_time.empty() && stage.stage.kind == record::StageKind::shake)
     stage.pga = stage.pgv = stage.arias = std::nan("");
   stage.damage = unknown_damage();
-  for (const simulation::Frame& frame : data.frames)
+  for (const record::Frame& frame : data.frames)
     if (frame.stage == index) stage.damage = damage_of(data.model, frame);
 }
 
@@ -154,11 +154,11 @@ void check_record(const RunData& data) {
   const auto is_block = [&](int b) {
     return b >= 0 && static_cast<std::size_t>(b) < data.model.blocks.size();
   };
-  const simulation::OverlapRecord& overlap = data.run.max_overlap;
+  const record::OverlapRecord& overlap = data.run.max_overlap;
   bool fits = (overlap.block_a < 0 && overlap.block_b < 0) ||
               (is_block(overlap.block_a) && is_block(overlap.block_b));
   check_steps(data.run.steps, "run");
-  for (const simulation::StageRecord& stage : data.run.stages) {
+  for (const record::StageRecord& stage : data.run.stages) {
     check_steps(stage.steps, "stages");
     fits = fits && stage.motion_time.size() == stage.motion.size() &&
            has_known_blocks(stage, data.model.blocks.size());
@@ -197,19 +197,19 @@ void check_rows(const RunData& data) {
   check_places(data.frames, "frames");
   check_places(data.contacts, "contacts");
   check_places(data.steps, "steps");
-  for (const simulation::HistoryRow& row : data.histories) check_steps(row.step, "histories");
-  for (const simulation::Frame& frame : data.frames) {
+  for (const record::HistoryRow& row : data.histories) check_steps(row.step, "histories");
+  for (const record::Frame& frame : data.frames) {
     if (frame.displacement.size() != data.model.vertices.size() || frame.status.size() != blocks)
       throw RunError("frames and model differ in size");
   }
   const auto known = [&](int block) { return block >= 0 && static_cast<std::size_t>(block) < blocks; };
-  for (const simulation::ContactFrame& frame : data.contacts) {
-    for (const simulation::ContactRecord& contact : frame.contacts) {
+  for (const record::ContactFrame& frame : data.contacts) {
+    for (const record::ContactRecord& contact : frame.contacts) {
       if (!known(contact.block_a) || !known(contact.block_b))
         throw RunError("contacts/block_a or block_b is out of range");
     }
   }
-  for (const simulation::HistoryRow& row : data.histories) {
+  for (const record::HistoryRow& row : data.histories) {
     if (row.points.size() != data.model.history_names.size())
       throw RunError("histories/values does not fit histories/names");
     if (row.elements.size() != data.model.element_histories.size())
@@ -226,9 +226,9 @@ std::vector<int> last_orders(const RunData& run) {
   return orders;
 }
 
-std::size_t frame_of(const simulation::ContactFrame& snapshot, const std::vector<simulation::Frame>& frames) {
+std::size_t frame_of(const record::ContactFrame& snapshot, const std::vector<record::Frame>& frames) {
   const auto later = std::upper_bound(frames.begin(), frames.end(), snapshot,
-                                      [](const simulation::ContactFrame& c, const simulation::Frame& f) {
+                                      [](const record::ContactFrame& c, const record::Frame& f) {
                                         return std::pair(c.stage, c.step) < std::pair(f.stage, f.step);
                                       });
   return later == frames.begin() ? 0 : static_cast<std::size_t>(later - frames.begin()) - 1;
@@ -250,19 +250,19 @@ RunData read_run(const std::filesystem::path& directory) {
 }
 
 // summary.json is the last that a run writes, after the same text in result.h5.
-std::optional<simulation::RunRecord> ended_run(const std::filesystem::path& directory) {
-  return with_file(directory, [&](hid_t file) -> std::optional<simulation::RunRecord> {
+std::optional<record::RunRecord> ended_run(const std::filesystem::path& directory) {
+  return with_file(directory, [&](hid_t file) -> std::optional<record::RunRecord> {
     const auto lines = TextColumn::read_lines(file, "run");
     const std::filesystem::path summary = directory / "summary.json";
     if (lines.empty()) return std::nullopt;
-    simulation::RunRecord run = read_run_json(lines.back());
+    record::RunRecord run = read_run_json(lines.back());
     const bool has_ended =
         !run.interrupted && file_exists(summary) && read_file(summary) == TextColumn::read(file, "summary");
     return has_ended ? std::optional(std::move(run)) : std::nullopt;
   });
 }
 
-std::vector<simulation::HistoryRow> read_histories(const std::filesystem::path& directory) {
+std::vector<record::HistoryRow> read_histories(const std::filesystem::path& directory) {
   return with_file(directory, [](hid_t file) { return HistoryTable::read(file); });
 }
 

@@ -18,14 +18,14 @@ using hdf5::Array;
 using hdf5::read_array;
 using hdf5::read_column;
 
-constexpr std::size_t energy_terms = std::size(simulation::energy_fields);
+constexpr std::size_t energy_terms = std::size(record::energy_fields);
 constexpr std::size_t first_energy_terms = 9;  // of results of the first version
 
 static_assert(sizeof(Vec2) == 2 * sizeof(double));
 
 }  // namespace
 
-FrameTable::FrameTable(hid_t file, const simulation::ModelRecord& model)
+FrameTable::FrameTable(hid_t file, const record::ModelRecord& model)
     : vertices_(model.vertices.size()),
       blocks_(model.blocks.size()),
       elements_(file, model),
@@ -39,7 +39,7 @@ FrameTable::FrameTable(hid_t file, const simulation::ModelRecord& model)
       step_(group_, "step", {}),
       time_(group_, "time", {}) {}
 
-void FrameTable::append(const simulation::Frame& frame) {
+void FrameTable::append(const record::Frame& frame) {
   if (frame.displacement.size() != vertices_ || frame.stress.size() != blocks_ ||
       frame.status.size() != blocks_ || frame.order.size() != blocks_ ||
       (!frame.velocity.empty() && frame.velocity.size() != blocks_)) {
@@ -50,7 +50,7 @@ void FrameTable::append(const simulation::Frame& frame) {
   const std::vector<float> unknown(frame.velocity.empty() ? 2 * blocks_ : 0, std::nanf(""));
   velocity_.append_row(unknown.empty() ? flat(frame.velocity.data()->data(), 2 * blocks_) : unknown);
   std::vector<std::uint8_t> status;
-  for (const simulation::BlockStatus s : frame.status) status.push_back(static_cast<std::uint8_t>(s));
+  for (const record::BlockStatus s : frame.status) status.push_back(static_cast<std::uint8_t>(s));
   status_.append_row(status);
   order_.append_row(frame.order);
   elements_.append(frame.elements);
@@ -71,7 +71,7 @@ void FrameTable::flush() {
   time_.flush();
 }
 
-std::vector<simulation::Frame> FrameTable::read(hid_t file, const simulation::ModelRecord& model) {
+std::vector<record::Frame> FrameTable::read(hid_t file, const record::ModelRecord& model) {
   const hdf5::Handle group = hdf5::open_group(file, "frames");
   const auto time = read_column<double>(group, "time");
   const auto displacement = read_array<float>(group, "displacement"),
@@ -87,11 +87,11 @@ std::vector<simulation::Frame> FrameTable::read(hid_t file, const simulation::Mo
   require(stress.width() == 3 * nb, "frames/stress");
   require(order.width() == nb, "frames/order");
   require(!has_velocity || velocity.width() == 2 * nb, "frames/velocity");
-  std::vector<simulation::Frame> frames(
+  std::vector<record::Frame> frames(
       common_rows(time, {displacement.rows(), stress.rows(), status.rows(), order.rows(), stage.rows(),
                          step.rows(), has_velocity ? velocity.rows() : displacement.rows()}));
   for (std::size_t f = 0; f < frames.size(); ++f) {
-    simulation::Frame& frame = frames[f];
+    record::Frame& frame = frames[f];
     frame.time = time.values[f];
     frame.stage = stage.values[f];
     frame.step = step.values[f];
@@ -107,7 +107,7 @@ std::vector<simulation::Frame> FrameTable::read(hid_t file, const simulation::Mo
     frame.order.assign(orders.begin(), orders.end());
     for (std::size_t b = 0; b < nb; ++b) {
       frame.status.push_back(
-          enumerator(status.values[nb * f + b], simulation::BlockStatus::excavated, "frames/status"));
+          enumerator(status.values[nb * f + b], record::BlockStatus::excavated, "frames/status"));
     }
   }
   ElementTable::read(file, model.elements.size(), frames);
@@ -125,12 +125,12 @@ StepTable::StepTable(hid_t file)
       max_displacement_(group_, "max_displacement", {}),
       energy_(group_, "energy", {energy_terms}),
       time_(group_, "time", {}) {
-  hdf5::write_strings(group_, "energy_names", simulation::energy_names());
+  hdf5::write_strings(group_, "energy_names", record::energy_names());
 }
 
-void StepTable::append(const simulation::StepRow& row) {
+void StepTable::append(const record::StepRow& row) {
   std::array<double, energy_terms> energy{};
-  for (std::size_t k = 0; k < energy_terms; ++k) energy[k] = row.energy.*simulation::energy_fields[k].number;
+  for (std::size_t k = 0; k < energy_terms; ++k) energy[k] = row.energy.*record::energy_fields[k].number;
   stage_.append(row.stage);
   iterations_.append(row.iterations);
   closed_contacts_.append(row.closed_contacts);
@@ -149,7 +149,7 @@ void StepTable::flush() {
   time_.flush();
 }
 
-std::vector<simulation::StepRow> StepTable::read(hid_t file) {
+std::vector<record::StepRow> StepTable::read(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "steps");
   const auto time = read_column<double>(group, "time");
   const auto stage = read_column<std::int32_t>(group, "stage"),
@@ -162,7 +162,7 @@ std::vector<simulation::StepRow> StepTable::read(hid_t file) {
   const auto energy = read_array<double>(group, "energy");
   const std::size_t terms = energy.width();
   require(terms >= first_energy_terms && terms <= energy_terms, "steps/energy");
-  std::vector<simulation::StepRow> rows(
+  std::vector<record::StepRow> rows(
       common_rows(time, {stage.rows(), iterations.rows(), closed_contacts.rows(), step.rows(),
                          step_size.rows(), penetration.rows(), max_displacement.rows(), energy.rows()}));
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -176,7 +176,7 @@ std::vector<simulation::StepRow> StepTable::read(hid_t file) {
                closed_contacts.values[k],
                {}};
     for (std::size_t i = 0; i < terms; ++i) {
-      rows[k].energy.*simulation::energy_fields[i].number = energy.values[terms * k + i];
+      rows[k].energy.*record::energy_fields[i].number = energy.values[terms * k + i];
     }
   }
   return rows;

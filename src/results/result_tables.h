@@ -15,21 +15,21 @@ namespace keyblock::results {
 inline constexpr const char* result_format = "keyblock result";
 inline constexpr int result_format_version = 2;
 
-void write_model(hid_t file, const simulation::ModelRecord& model);
-simulation::ModelRecord read_model(hid_t file);
+void write_model(hid_t file, const record::ModelRecord& model);
+record::ModelRecord read_model(hid_t file);
 
 /// Gives every dataset of a new file its attributes: what it is, its unit, the names of its columns and of its values where these are numbers
 /// that stand for words; and its dimensions, by which netCDF knows them.
-void describe_datasets(hid_t file, const simulation::ModelRecord& model);
+void describe_datasets(hid_t file, const record::ModelRecord& model);
 /// The names of columns and values, by dataset: {"frames/status": {"values": […]}}.
-nlohmann::ordered_json dataset_names(const simulation::ModelRecord& model);
+nlohmann::ordered_json dataset_names(const record::ModelRecord& model);
 
 class FrameTable {
  public:
-  FrameTable(hid_t file, const simulation::ModelRecord& model);
-  void append(const simulation::Frame& frame);
+  FrameTable(hid_t file, const record::ModelRecord& model);
+  void append(const record::Frame& frame);
   void flush();
-  static std::vector<simulation::Frame> read(hid_t file, const simulation::ModelRecord& model);
+  static std::vector<record::Frame> read(hid_t file, const record::ModelRecord& model);
 
  private:
   std::size_t vertices_, blocks_;
@@ -46,9 +46,9 @@ class FrameTable {
 class ContactTable {
  public:
   explicit ContactTable(hid_t file);
-  void append(const simulation::ContactFrame& frame);
+  void append(const record::ContactFrame& frame);
   void flush();
-  static std::vector<simulation::ContactFrame> read(hid_t file);
+  static std::vector<record::ContactFrame> read(hid_t file);
 
  private:
   hdf5::Handle group_;
@@ -56,7 +56,7 @@ class ContactTable {
   hdf5::Column<std::uint8_t> state_, edge_kind_;
   hdf5::Column<std::int16_t> edge_index_;
   hdf5::Column<double> position_, normal_;
-  std::vector<hdf5::Column<double>> numbers_;  ///< as in simulation::contact_fields
+  std::vector<hdf5::Column<double>> numbers_;  ///< as in record::contact_fields
   hdf5::Column<std::int32_t> stage_;
   hdf5::Column<std::int64_t> step_, end_, contact_;
   hdf5::Column<double> time_;
@@ -64,10 +64,10 @@ class ContactTable {
 
 class HistoryTable {
  public:
-  HistoryTable(hid_t file, const simulation::ModelRecord& model);
-  void append(const simulation::HistoryRow& row);
+  HistoryTable(hid_t file, const record::ModelRecord& model);
+  void append(const record::HistoryRow& row);
   void flush();
-  static std::vector<simulation::HistoryRow> read(hid_t file);
+  static std::vector<record::HistoryRow> read(hid_t file);
 
  private:
   std::size_t points_, elements_;
@@ -80,9 +80,9 @@ class HistoryTable {
 class StepTable {
  public:
   explicit StepTable(hid_t file);
-  void append(const simulation::StepRow& row);
+  void append(const record::StepRow& row);
   void flush();
-  static std::vector<simulation::StepRow> read(hid_t file);
+  static std::vector<record::StepRow> read(hid_t file);
 
  private:
   hdf5::Handle group_;

@@ -32,7 +32,7 @@ constexpr double time_to_first_stretch = 200.0;
 // it writes stops between pages, so that no piece of metadata is left half written.
 constexpr hsize_t file_page = 4096;
 
-hdf5::Handle create_file(const std::filesystem::path& path, const simulation::ModelRecord& model) {
+hdf5::Handle create_file(const std::filesystem::path& path, const record::ModelRecord& model) {
   const char* const what = "file";
   const hdf5::Handle creation(hdf5::check_id(H5Pcreate(H5P_FILE_CREATE), what), H5Pclose);
   hdf5::check(H5Pset_file_space_strategy(creation, H5F_FSPACE_STRATEGY_PAGE, false, 1), what);
@@ -50,7 +50,7 @@ hdf5::Handle create_file(const std::filesystem::path& path, const simulation::Mo
 struct ResultWriter::State {
   // The tables of one file. Members close in reverse order, the file last.
   struct OpenFile {
-    OpenFile(const std::filesystem::path& path, const simulation::ModelRecord& model)
+    OpenFile(const std::filesystem::path& path, const record::ModelRecord& model)
         : file(create_file(path, model)),
           frames(file, model),
           contacts(file),
@@ -83,13 +83,13 @@ struct ResultWriter::State {
   hdf5::QuietErrors quiet;
   std::filesystem::path directory, temporary;
   std::chrono::duration<double> flush_interval{};
-  simulation::ModelRecord model;
+  record::ModelRecord model;
   std::optional<OpenFile> file;
   Clock::time_point start, last_flush;
   std::function<void()> before_publishing;
   bool published = false;
-  std::optional<simulation::Reported> earlier;  // by the run that is resumed
-  std::vector<std::string> waiting_stages;      // lines from before the first row
+  std::optional<record::Reported> earlier;  // by the run that is resumed
+  std::vector<std::string> waiting_stages;  // lines from before the first row
 
   [[nodiscard]] std::filesystem::path path() const { return directory / "result.h5"; }
   [[nodiscard]] bool flush_is_due() const;
@@ -153,7 +153,7 @@ void ResultWriter::State::copy_earlier() {
   copy("rows of histories", data.histories, earlier->histories, to(file->histories));
   copy("rows of steps", data.steps, earlier->steps, to(file->steps));
   copy("stages", data.run.stages, earlier->stages + (earlier->within_stage ? 1 : 0),
-       [&](std::size_t k, const simulation::StageRecord& stage) {
+       [&](std::size_t k, const record::StageRecord& stage) {
          const int index = static_cast<int>(k);
          file->stages.append_line(stage_json(index, stage, index < earlier->stages));
        });
@@ -196,7 +196,7 @@ void ResultWriter::before_publishing(std::function<void()> call) {
   state_->before_publishing = std::move(call);
 }
 
-void ResultWriter::begin(const simulation::ModelRecord& model) {
+void ResultWriter::begin(const record::ModelRecord& model) {
   std::error_code error;
   std::filesystem::create_directories(state_->directory, error);
   if (error)
@@ -213,7 +213,7 @@ void ResultWriter::begin(const simulation::ModelRecord& model) {
   state_->start = state_->last_flush = Clock::now();
 }
 
-void ResultWriter::resume(const simulation::Reported& reported) {
+void ResultWriter::resume(const record::Reported& reported) {
   state_->earlier = reported;
 }
 
@@ -228,7 +228,7 @@ void ResultWriter::flush() {
   state_->last_flush = Clock::now();
 }
 
-void ResultWriter::stage_begin(int index, const simulation::StageRecord& stage) {
+void ResultWriter::stage_begin(int index, const record::StageRecord& stage) {
   const std::string line = stage_json(index, stage, false);
   if (!state_->published) {
     state_->waiting_stages.push_back(line);
@@ -237,22 +237,22 @@ void ResultWriter::stage_begin(int index, const simulation::StageRecord& stage) 
   }
 }
 
-void ResultWriter::frame(const simulation::Frame& frame) {
+void ResultWriter::frame(const record::Frame& frame) {
   before_event();
   state_->change_file([&] { state_->file->frames.append(frame); });
 }
 
-void ResultWriter::contacts(const simulation::ContactFrame& frame) {
+void ResultWriter::contacts(const record::ContactFrame& frame) {
   before_event();
   state_->change_file([&] { state_->file->contacts.append(frame); });
 }
 
-void ResultWriter::history(const simulation::HistoryRow& row) {
+void ResultWriter::history(const record::HistoryRow& row) {
   before_event();
   state_->change_file([&] { state_->file->histories.append(row); });
 }
 
-void ResultWriter::step(const simulation::StepRow& row) {
+void ResultWriter::step(const record::StepRow& row) {
   before_event();
   state_->change_file([&] { state_->file->steps.append(row); });
 }
@@ -264,7 +264,7 @@ void ResultWriter::checkpoint() {
   state_->change_file([&] { hdf5::sync(state_->file->file); });
 }
 
-void ResultWriter::stage_end(int index, const simulation::StageRecord& stage) {
+void ResultWriter::stage_end(int index, const record::StageRecord& stage) {
   const std::string line = stage_json(index, stage, true);
   if (!state_->published) {
     state_->waiting_stages.push_back(line);
@@ -274,7 +274,7 @@ void ResultWriter::stage_end(int index, const simulation::StageRecord& stage) {
   flush();
 }
 
-void ResultWriter::end(const simulation::RunRecord& run) {
+void ResultWriter::end(const record::RunRecord& run) {
   if (!state_->file) return;  // the run failed before it began, or the file could not be written
   if (!state_->published) state_->publish();
   state_->change_file([&] {

@@ -19,7 +19,7 @@ namespace keyblock::results {
 /// earlier one what that had reported by its checkpoint; InputError where there is no earlier one, or less of it.
 ///
 /// Every call may throw RunError: the disk may be full. Then nothing more is written, and what was flushed before can be read.
-class ResultWriter : public simulation::RunObserver {
+class ResultWriter : public record::RunObserver {
  public:
   static constexpr double default_flush_interval = 2.0;  // s of wall time
   explicit ResultWriter(std::filesystem::path directory, double flush_interval = default_flush_interval);
@@ -32,16 +32,16 @@ class ResultWriter : public simulation::RunObserver {
   /// Lets the file go, with what was flushed. No event may follow.
   void close();
 
-  void begin(const simulation::ModelRecord& model) override;
-  void resume(const simulation::Reported& reported) override;
-  void stage_begin(int index, const simulation::StageRecord& stage) override;
-  void frame(const simulation::Frame& frame) override;
-  void contacts(const simulation::ContactFrame& frame) override;
-  void history(const simulation::HistoryRow& row) override;
-  void step(const simulation::StepRow& row) override;
+  void begin(const record::ModelRecord& model) override;
+  void resume(const record::Reported& reported) override;
+  void stage_begin(int index, const record::StageRecord& stage) override;
+  void frame(const record::Frame& frame) override;
+  void contacts(const record::ContactFrame& frame) override;
+  void history(const record::HistoryRow& row) override;
+  void step(const record::StepRow& row) override;
   void checkpoint() override;
-  void stage_end(int index, const simulation::StageRecord& stage) override;
-  void end(const simulation::RunRecord& run) override;
+  void stage_end(int index, const record::StageRecord& stage) override;
+  void end(const record::RunRecord& run) override;
 
  private:
   void before_event();

@@ -12,8 +12,8 @@ namespace keyblock::results {
 namespace {
 
 using nlohmann::ordered_json;
-using simulation::StageField;
-using simulation::StageKind;
+using record::StageField;
+using record::StageKind;
 
 /// "group.name" in two; without a group that is empty.
 std::pair<std::string, std::string> split(std::string_view name) {
@@ -24,9 +24,9 @@ std::pair<std::string, std::string> split(std::string_view name) {
 
 }  // namespace
 
-ordered_json stage_fields_json(const simulation::StageRecord& stage, simulation::RecordFile file) {
+ordered_json stage_fields_json(const record::StageRecord& stage, record::RecordFile file) {
   ordered_json json;
-  simulation::visit_stage(stage, [&](const StageField& field, const auto& value) {
+  record::visit_stage(stage, [&](const StageField& field, const auto& value) {
     if (field.file > file) return;
     const auto [group, name] = split(field.name);
     (group.empty() ? json : json[group])[name] = json_of(value);
@@ -34,14 +34,13 @@ ordered_json stage_fields_json(const simulation::StageRecord& stage, simulation:
   return json;
 }
 
-void read_stage_fields(const ordered_json& json, simulation::StageRecord& stage) {
-  simulation::visit_stage(stage,
-                          [&](const StageField& field, auto& value) { read_field(json, field, value); });
+void read_stage_fields(const ordered_json& json, record::StageRecord& stage) {
+  record::visit_stage(stage, [&](const StageField& field, auto& value) { read_field(json, field, value); });
 }
 
-void add_verdict(const simulation::StageRecord& stage, ordered_json& equilibrium) {
+void add_verdict(const record::StageRecord& stage, ordered_json& equilibrium) {
   const bool is_static = stage.stage.kind == StageKind::settle;
-  equilibrium["verdict"] = is_static ? ordered_json(simulation::verdict_text(stage)) : ordered_json();
+  equilibrium["verdict"] = is_static ? ordered_json(record::verdict_text(stage)) : ordered_json();
   equilibrium["moving"] = movements_json(stage);
 }
 

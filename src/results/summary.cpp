@@ -18,7 +18,7 @@ namespace {
 using nlohmann::ordered_json;
 
 // The frame around a domain is a block of the model, fixed and with no edge but the domain's.
-bool is_frame(const simulation::ModelRecord& model, const simulation::ModelRecord::Block& block) {
+bool is_frame(const record::ModelRecord& model, const record::ModelRecord::Block& block) {
   bool along_domain = block.fixed;
   for (int k = block.ring_start.front(); k < block.ring_start.back() && along_domain; ++k) {
     along_domain = model.edge_label[static_cast<std::size_t>(k)].kind == cutting::EdgeKind::domain;
@@ -31,7 +31,7 @@ struct Count {
   int vertices = 0;
 };
 
-Count count(const simulation::ModelRecord& model) {
+Count count(const record::ModelRecord& model) {
   Count count;
   for (const auto& block : model.blocks) {
     if (is_frame(model, block)) continue;
@@ -42,8 +42,8 @@ Count count(const simulation::ModelRecord& model) {
 }
 
 // Equilibrium is a question only where the stage seeks it.
-void judge(const simulation::StageRecord& r, ordered_json& equilibrium) {
-  if (r.stage.kind != simulation::StageKind::settle) {
+void judge(const record::StageRecord& r, ordered_json& equilibrium) {
+  if (r.stage.kind != record::StageKind::settle) {
     equilibrium.erase("unstable_block");
     equilibrium.erase("moving");
     for (auto& value : equilibrium) value = nullptr;
@@ -56,7 +56,7 @@ void judge(const simulation::StageRecord& r, ordered_json& equilibrium) {
   if (r.unstable_block < 0) equilibrium["unstable_block"] = nullptr;
 }
 
-ordered_json blocks_by_order(const simulation::StageRecord& r) {
+ordered_json blocks_by_order(const record::StageRecord& r) {
   ordered_json json = ordered_json::object();
   for (std::size_t n = 0; n < r.blocks_by_order.size(); ++n) {
     if (r.blocks_by_order[n] > 0) json[std::to_string(n)] = r.blocks_by_order[n];
@@ -64,17 +64,17 @@ ordered_json blocks_by_order(const simulation::StageRecord& r) {
   return json;
 }
 
-ordered_json stage(const simulation::StageRecord& r, const simulation::ModelRecord& model) {
-  ordered_json json = stage_fields_json(r, simulation::RecordFile::summary);
+ordered_json stage(const record::StageRecord& r, const record::ModelRecord& model) {
+  ordered_json json = stage_fields_json(r, record::RecordFile::summary);
   judge(r, json["equilibrium"]);
   json["blocks_by_order"] = blocks_by_order(r);
   json["release"] = release_json(r.release, model.excavation_names);
   return json;
 }
 
-ordered_json damping(const simulation::ModelRecord& model) {
+ordered_json damping(const record::ModelRecord& model) {
   ordered_json json = ordered_json::array();
-  for (const simulation::DampingRow& row : model.damping)
+  for (const record::DampingRow& row : model.damping)
     json.push_back({{"frequency_hz", row.frequency},
                     {"rock", row.rock},
                     {"rule", row.rule},
@@ -84,9 +84,9 @@ ordered_json damping(const simulation::ModelRecord& model) {
 }
 
 /// null where there is none.
-ordered_json rock_layers(const std::vector<simulation::LayerRecord>& layers, double origin) {
+ordered_json rock_layers(const std::vector<record::LayerRecord>& layers, double origin) {
   ordered_json rock = ordered_json::array();
-  for (const simulation::LayerRecord& layer : layers) {
+  for (const record::LayerRecord& layer : layers) {
     rock.push_back({{"top_m", nullptr},
                     {"density", layer.density},
                     {"vs_m_s", layer.speeds.x},
@@ -96,11 +96,11 @@ ordered_json rock_layers(const std::vector<simulation::LayerRecord>& layers, dou
   return rock;
 }
 
-ordered_json boundary(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
+ordered_json boundary(const record::ModelRecord& model, const record::RunRecord& run) {
   if (!model.boundary) return nullptr;
-  const simulation::BoundaryRecord& b = *model.boundary;
+  const record::BoundaryRecord& b = *model.boundary;
   ordered_json columns = ordered_json::array(), half_space = nullptr;
-  for (const simulation::ColumnRecord& c : model.columns)
+  for (const record::ColumnRecord& c : model.columns)
     columns.push_back({{"x", c.x + model.origin.x},
                        {"base_m", c.base + model.origin.y},
                        {"ground_m", c.ground + model.origin.y},
@@ -118,7 +118,7 @@ ordered_json boundary(const simulation::ModelRecord& model, const simulation::Ru
           {"planes", planes_json(run.planes, model.origin)}};
 }
 
-ordered_json profile(const simulation::RunRecord& run) {
+ordered_json profile(const record::RunRecord& run) {
   ordered_json json = ordered_json::object();
   for (std::size_t k = 0; k < phase_count; ++k) {
     const Profile::Entry& entry = run.profile[static_cast<Phase>(k)];
@@ -129,7 +129,7 @@ ordered_json profile(const simulation::RunRecord& run) {
 
 }  // namespace
 
-Areas areas(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
+Areas areas(const record::ModelRecord& model, const record::RunRecord& run) {
   std::set<int> opened;
   for (const auto& stage : run.stages)
     opened.insert(stage.stage.excavate.begin(), stage.stage.excavate.end());
@@ -144,7 +144,7 @@ Areas areas(const simulation::ModelRecord& model, const simulation::RunRecord& r
   return areas;
 }
 
-std::string summary_json(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
+std::string summary_json(const record::ModelRecord& model, const record::RunRecord& run) {
   ordered_json stages = ordered_json::array();
   for (const auto& record : run.stages) stages.push_back(stage(record, model));
   const auto [blocks, vertices] = count(model);
@@ -166,22 +166,22 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"ms_per_step", run.steps > 0 ? 1e3 * run.wall_time / static_cast<double>(run.steps) : 0.0},
       {"threads", model.threads},
       {"profile", profile(run)}};
-  json.update(run_fields_json(run, simulation::RecordFile::summary));
+  json.update(run_fields_json(run, record::RecordFile::summary));
   json.update({{"max_overlap_at", overlap_place_json(run.max_overlap, model.origin)},
                {"contact_checks", contact_checks_json(run.contact_checks, model.origin)},
-               {"errors", simulation::computation_errors(run)},
+               {"errors", record::computation_errors(run)},
                {"boundary", boundary(model, run)},
                {"elements", elements_json(run.elements, model.origin)},
                {"water", run.water ? water_json(*run.water) : ordered_json()},
                {"damping", damping(model)},
-               {"energy_warnings", simulation::energy_warnings(run)},
+               {"energy_warnings", record::energy_warnings(run)},
                {"stages", stages}});
   for (const auto& [name, hash] : model.hooks) json["hooks"].push_back({{"name", name}, {"hash", hash}});
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-void write_summary(const std::filesystem::path& directory, const simulation::ModelRecord& model,
-                   const simulation::RunRecord& run) {
+void write_summary(const std::filesystem::path& directory, const record::ModelRecord& model,
+                   const record::RunRecord& run) {
   write_file_atomically(directory / "summary.json", summary_json(model, run));
 }
 

@@ -11,13 +11,13 @@ namespace {
 
 constexpr std::uint8_t vtk_triangle = 5, vtk_polygon = 7;
 
-Vec2 place(const simulation::ModelRecord& model, const simulation::Frame& frame, std::size_t vertex) {
+Vec2 place(const record::ModelRecord& model, const record::Frame& frame, std::size_t vertex) {
   const auto [ux, uy] = frame.displacement[vertex];
   return model.vertices[vertex] + Vec2{ux, uy};
 }
 
 /// Whether no vertex turns inwards by more than rounding makes it.
-bool is_convex(const simulation::ModelRecord& model, const simulation::Frame& frame, std::size_t block) {
+bool is_convex(const record::ModelRecord& model, const record::Frame& frame, std::size_t block) {
   constexpr double rounding = 1e-6;
   const std::vector<int>& start = model.blocks[block].ring_start;
   if (start.size() != 2) return false;
@@ -46,7 +46,7 @@ void add_vector(std::vector<float>& values, Vec2 v) {
 }
 
 /// The first edges of stretches of one label, in a ring of so many display vertices from `first` on; at least one.
-std::vector<int> stretches(const simulation::ModelRecord& model, int first, int count) {
+std::vector<int> stretches(const record::ModelRecord& model, int first, int count) {
   const auto label = [&](int k) {
     return model.edge_label[static_cast<std::size_t>(first + (k + count) % count)];
   };
@@ -65,11 +65,11 @@ const VtkBlocks::Triangles& VtkBlocks::triangles_of(std::size_t block) {
   return *triangles_[block];
 }
 
-bool VtkBlocks::is_drawn(const simulation::Frame& frame, std::size_t block) const {
-  return frame.status[block] != simulation::BlockStatus::excavated;
+bool VtkBlocks::is_drawn(const record::Frame& frame, std::size_t block) const {
+  return frame.status[block] != record::BlockStatus::excavated;
 }
 
-void VtkBlocks::add_block_data(VtkFile& file, const simulation::Frame& frame,
+void VtkBlocks::add_block_data(VtkFile& file, const record::Frame& frame,
                                const std::vector<int>& blocks) const {
   std::vector<std::int32_t> order, excavation;
   std::vector<std::uint8_t> status;
@@ -105,7 +105,7 @@ void VtkBlocks::add_block_data(VtkFile& file, const simulation::Frame& frame,
   file.array("excavation", view(excavation));
 }
 
-void VtkBlocks::add_vertices(VtkFile& file, const simulation::Frame& frame) const {
+void VtkBlocks::add_vertices(VtkFile& file, const record::Frame& frame) const {
   std::vector<double> points;
   std::vector<float> displacement;
   for (std::size_t k = 0; k < model_.vertices.size(); ++k) {
@@ -122,7 +122,7 @@ void VtkBlocks::add_vertices(VtkFile& file, const simulation::Frame& frame) cons
   file.close("Points");
 }
 
-std::string VtkBlocks::cells(const simulation::Frame& frame) {
+std::string VtkBlocks::cells(const record::Frame& frame) {
   std::vector<std::int64_t> vertices, end;
   std::vector<std::uint8_t> type;
   std::vector<int> block;
@@ -161,7 +161,7 @@ std::string VtkBlocks::cells(const simulation::Frame& frame) {
   return file.text();
 }
 
-std::string VtkBlocks::outlines(const simulation::Frame& frame) const {
+std::string VtkBlocks::outlines(const record::Frame& frame) const {
   std::vector<std::int64_t> vertices, end;
   std::vector<std::int32_t> block, edge_index;
   std::vector<std::uint8_t> status, edge_kind;
@@ -197,7 +197,7 @@ std::string VtkBlocks::outlines(const simulation::Frame& frame) const {
   return file.text();
 }
 
-std::string VtkBlocks::centres(const simulation::Frame& frame) const {
+std::string VtkBlocks::centres(const record::Frame& frame) const {
   std::vector<int> blocks;
   std::vector<double> points;
   std::vector<float> displacement;

@@ -16,10 +16,9 @@ void add(std::vector<double>& values, Vec2 v) {
 /// What contacts have, one value or vector for each.
 class ContactArrays {
  public:
-  void add_contact(const simulation::ContactRecord& c) {
+  void add_contact(const record::ContactRecord& c) {
     state_.push_back(static_cast<std::uint8_t>(c.state));
-    for (std::size_t k = 0; k < numbers_.size(); ++k)
-      numbers_[k].push_back(simulation::contact_fields[k].of(c));
+    for (std::size_t k = 0; k < numbers_.size(); ++k) numbers_[k].push_back(record::contact_fields[k].of(c));
     add(normal_, c.normal);
     // On block_a.
     add(force_, c.normal_force * c.normal - c.shear_force * perpendicular(c.normal));
@@ -31,7 +30,7 @@ class ContactArrays {
   void write(VtkFile& file) const {
     file.array("state", view(state_));
     for (std::size_t k = 0; k < numbers_.size(); ++k)
-      file.array(simulation::contact_fields[k].name, view(numbers_[k]));
+      file.array(record::contact_fields[k].name, view(numbers_[k]));
     file.array("force", view(force_), 3);
     file.array("normal", view(normal_), 3);
     file.array("block_a", view(block_a_));
@@ -41,7 +40,7 @@ class ContactArrays {
   }
 
  private:
-  std::array<std::vector<double>, std::size(simulation::contact_fields)> numbers_;
+  std::array<std::vector<double>, std::size(record::contact_fields)> numbers_;
   std::vector<double> normal_, force_;
   std::vector<std::uint8_t> state_, edge_kind_;
   std::vector<std::int32_t> edge_index_, block_a_, block_b_;
@@ -50,15 +49,15 @@ class ContactArrays {
 }  // namespace
 
 std::string vtk_contact_lines(const RunData& data, const JointLocator& locator,
-                              const simulation::ContactFrame& frame) {
-  const simulation::ModelRecord& model = data.model;
+                              const record::ContactFrame& frame) {
+  const record::ModelRecord& model = data.model;
   const std::vector<std::array<float, 2>> displacement =
       data.frames.empty() ? std::vector<std::array<float, 2>>(model.vertices.size())
                           : data.frames[frame_of(frame, data.frames)].displacement;
   std::vector<double> points;
   std::vector<std::int64_t> vertices, end;
   ContactArrays arrays;
-  for (const simulation::ContactRecord& c : frame.contacts) {
+  for (const record::ContactRecord& c : frame.contacts) {
     const auto [from, to] = locator.reach(c, displacement);
     for (const double along : {from, to}) {
       vertices.push_back(static_cast<std::int64_t>(vertices.size()));
@@ -81,10 +80,10 @@ std::string vtk_contact_lines(const RunData& data, const JointLocator& locator,
   return file.text();
 }
 
-std::string vtk_contact_forces(const simulation::ModelRecord& model, const simulation::ContactFrame& frame) {
+std::string vtk_contact_forces(const record::ModelRecord& model, const record::ContactFrame& frame) {
   std::vector<double> points;
   ContactArrays arrays;
-  for (const simulation::ContactRecord& c : frame.contacts) {
+  for (const record::ContactRecord& c : frame.contacts) {
     if (c.normal_force == 0.0 && c.shear_force == 0.0) continue;
     add(points, c.position);
     arrays.add_contact(c);

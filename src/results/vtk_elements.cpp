@@ -4,13 +4,13 @@
 
 namespace keyblock::results {
 
-std::string vtk_elements(const simulation::ModelRecord& model, const simulation::Frame& frame) {
+std::string vtk_elements(const record::ModelRecord& model, const record::Frame& frame) {
   std::vector<double> points, utilization;
-  std::vector<double> numbers[std::size(simulation::element_state_fields)];
+  std::vector<double> numbers[std::size(record::element_state_fields)];
   std::vector<std::int64_t> vertices, end;
   std::vector<std::int32_t> number;
   for (std::size_t k = 0; k < frame.elements.size(); ++k) {
-    const simulation::ElementState& e = frame.elements[k];
+    const record::ElementState& e = frame.elements[k];
     if (!e.present) continue;
     for (const Vec2 p : {e.from, e.to}) {
       vertices.push_back(static_cast<std::int64_t>(vertices.size()));
@@ -18,10 +18,10 @@ std::string vtk_elements(const simulation::ModelRecord& model, const simulation:
     }
     end.push_back(static_cast<std::int64_t>(vertices.size()));
     number.push_back(static_cast<std::int32_t>(k));
-    const simulation::ElementDescription& of = model.elements[k];
+    const record::ElementDescription& of = model.elements[k];
     utilization.push_back(std::isfinite(of.limit) ? e.utilization(of) : std::nan(""));
     for (std::size_t n = 0; n < std::size(numbers); ++n)
-      numbers[n].push_back(e.*simulation::element_state_fields[n].number);
+      numbers[n].push_back(e.*record::element_state_fields[n].number);
   }
   VtkFile file("PolyData");
   add_vtk_moment(file, model, frame.time, frame.stage, frame.step);
@@ -29,7 +29,7 @@ std::string vtk_elements(const simulation::ModelRecord& model, const simulation:
   file.open("CellData", "Scalars=\"force\"");
   file.array("element", view(number));
   for (std::size_t n = 0; n < std::size(numbers); ++n)
-    file.array(simulation::element_state_fields[n].name, view(numbers[n]));
+    file.array(record::element_state_fields[n].name, view(numbers[n]));
   file.array("utilization", view(utilization));
   file.close("CellData");
   file.open("Points");

@@ -99,9 +99,9 @@ if sys.argv[1:] and sys.argv[1].endswith(".png"):
 double largest_in_place(const RunData& data) {
   double largest = 0.0;
   if (data.frames.empty()) return largest;
-  const simulation::Frame& frame = data.frames.back();
+  const record::Frame& frame = data.frames.back();
   for (std::size_t b = 0; b < data.model.blocks.size(); ++b) {
-    if (frame.status[b] <= simulation::BlockStatus::loosened)
+    if (frame.status[b] <= record::BlockStatus::loosened)
       largest = std::max(largest, norm(block_displacement(data.model, frame, b)));
   }
   return largest;

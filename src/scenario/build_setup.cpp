@@ -39,10 +39,10 @@ using simulation::RunSetup;
   throw InputError(Diagnostic{scenario.where(key), key, std::move(found), std::move(expected), ""});
 }
 
-std::optional<InSituStress> in_situ_stress(const Scenario& scenario, double top) {
+std::optional<block::InSituStress> in_situ_stress(const Scenario& scenario, double top) {
   if (!scenario.in_situ) return std::nullopt;
   const InSituSpec& spec = *scenario.in_situ;
-  InSituStress stress;
+  block::InSituStress stress;
   if (!spec.depth) {
     stress.sxx = spec.sxx;
     stress.syy = spec.syy;
@@ -80,7 +80,7 @@ void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
   }
   // What a stage installs that is left out never comes to life.
   for (const auto* stages : {&scenario.stages, &scenario.left_out})
-    for (const simulation::Stage& stage : *stages)
+    for (const record::Stage& stage : *stages)
       setup.staged_supports.insert(setup.staged_supports.end(), stage.install.begin(), stage.install.end());
   for (loading::Spring& spring : setup.springs) {
     const auto place = std::ranges::find(setup.staged_supports, spring.name);
@@ -208,10 +208,10 @@ void place_rock(const Scenario& scenario, const BlockModel& blocks, RunSetup& se
 
 /// What waves, and blocks that swing against the ground, lose by the rock and by the rule of time integration together.
 void add_damping_facts(RunSetup& setup) {
-  const std::vector<simulation::DampingRow> rows = simulation::damping_table(setup);
+  const std::vector<record::DampingRow> rows = simulation::damping_table(setup);
   if (rows.empty()) return;
   std::string frequencies, of_waves, of_blocks;
-  for (const simulation::DampingRow& row : rows) {
+  for (const record::DampingRow& row : rows) {
     const char* between = frequencies.empty() ? "" : ", ";
     frequencies += fmt::format("{}{:g}", between, row.frequency);
     of_waves += fmt::format("{}{:.2g}", between, 100.0 * row.waves());
@@ -240,9 +240,8 @@ void warn_of_made_energy(const Scenario& scenario, const RunSetup& setup, std::v
              alpha = rule == dynamics::TimeIntegration::generalized_alpha &&
                      scenario.solver.spectral_radius > most_radius;
   const bool has_contacts = setup.properties.size() > 1;
-  const bool moves = std::ranges::any_of(scenario.stages, [](const simulation::Stage& stage) {
-    return stage.kind != simulation::StageKind::settle;
-  });
+  const bool moves = std::ranges::any_of(
+      scenario.stages, [](const record::Stage& stage) { return stage.kind != record::StageKind::settle; });
   if (!(average || alpha) || !has_contacts || !moves) return;
   notes.push_back(fmt::format(
       "solver.{}: makes energy wherever joints slide, open or close; \"shi\" and \"generalized-alpha\" "

@@ -63,7 +63,7 @@ std::optional<std::string> closure_is_lower_bound(const Scenario& scenario,
   constexpr double rounding = 1e-6;
   const double stiffness = stiffest_joint(scenario);
   for (std::size_t k = 0; k < setup.excavations.size(); ++k) {
-    const bool taken_out = std::ranges::any_of(setup.stages, [&](const simulation::Stage& stage) {
+    const bool taken_out = std::ranges::any_of(setup.stages, [&](const record::Stage& stage) {
       return std::ranges::find(stage.excavate, static_cast<int>(k)) != stage.excavate.end();
     });
     if (!taken_out) continue;

@@ -18,9 +18,9 @@
 namespace keyblock::scenario {
 namespace {
 
+using record::Stage;
+using record::StageKind;
 using simulation::RunSetup;
-using simulation::Stage;
-using simulation::StageKind;
 
 constexpr double blocks_across = 4.0;  // across a box whose waves are missed
 constexpr double most_share = 0.02;    // of critical, that a rule takes from a spring unnoticed

@@ -15,7 +15,7 @@
 namespace keyblock::scenario {
 namespace {
 
-using simulation::Sides;
+using record::Sides;
 
 dynamics::RockLayer layer_of(double top, double density, double vs, double vp) {
   const double shear = density * vs * vs, upright = density * vp * vp;
@@ -104,8 +104,8 @@ void take_layers(const Scenario& scenario, std::span<const simulation::JointPiec
                               density * spec.vp.value_or(lowest.speeds().y)};
 }
 
-void warn_of_motion(const Scenario& scenario, const simulation::RunSetup& setup,
-                    const simulation::Stage& stage, std::vector<std::string>& warnings) {
+void warn_of_motion(const Scenario& scenario, const simulation::RunSetup& setup, const record::Stage& stage,
+                    std::vector<std::string>& warnings) {
   constexpr double most_drift = 1e-3;    // m, of one end of the model against the other
   constexpr double least_blocks = 10.0;  // in the length of a wave
   const simulation::Boundary& boundary = *setup.boundary;
@@ -263,8 +263,8 @@ void add_boundary_warnings(const Scenario& scenario, const simulation::RunSetup&
                            std::vector<std::string>& warnings) {
   if (!setup.boundary) return;
   if (!setup.has_domain) warn_of_base(setup, warnings);
-  for (const simulation::Stage& stage : setup.stages) {
-    if (stage.kind == simulation::StageKind::shake) warn_of_motion(scenario, setup, stage, warnings);
+  for (const record::Stage& stage : setup.stages) {
+    if (stage.kind == record::StageKind::shake) warn_of_motion(scenario, setup, stage, warnings);
   }
 }
 

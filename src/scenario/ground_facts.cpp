@@ -75,7 +75,7 @@ class Facts {
     for (const RegionSpec& spec : scenario_.regions) add(quoted("region", spec.name), own_rock(spec.rock));
     around();
     shaking();
-    for (const simulation::Stage& stage : scenario_.stages) {
+    for (const record::Stage& stage : scenario_.stages) {
       if (stage.k_h != 0.0 || stage.k_v != 0.0)
         add(quoted("seismic coefficients in", stage.name),
             fmt::format("k_h {}, k_v {}", number(stage.k_h), number(stage.k_v)));
@@ -136,7 +136,7 @@ class Facts {
     if (spec.sets)
       text +=
           fmt::format(", in {} of {} sets and maps", std::ranges::count(*spec.sets, true), spec.sets->size());
-    for (const simulation::Stage& stage : scenario_.stages)
+    for (const record::Stage& stage : scenario_.stages)
       if (stage.water && *stage.water >= 0 &&
           scenario_.waters[static_cast<std::size_t>(*stage.water)].name == spec.name)
         text += fmt::format(", from “{}” on", stage.name);
@@ -164,7 +164,7 @@ class Facts {
     add("Poisson's ratio ν", number(*rock.poisson));
     const std::string order = *rock.order == automatic_order ? "automatic" : std::to_string(*rock.order);
     add("section", fmt::format("plane {}, blocks of order {}",
-                               *rock.state == PlaneState::plane_strain ? "strain" : "stress", order));
+                               *rock.state == block::PlaneState::plane_strain ? "strain" : "stress", order));
   }
 
   void joints() {
@@ -175,7 +175,7 @@ class Facts {
     if (joints.has_residual()) add("joints: residual strength", residual(joints));
     if (joints.strength_factor) add("joints: strength divided by", number(*joints.strength_factor));
     const double normal = joints.normal_stiffness.value_or(scenario_.solver.penalty * *scenario_.rock.young);
-    const double shear = joints.shear_stiffness.value_or(JointProperties{}.stiffness_ratio * normal);
+    const double shear = joints.shear_stiffness.value_or(contact::JointProperties{}.stiffness_ratio * normal);
     const char* standard = joints.normal_stiffness ? "" : " (default)";
     add("joints: stiffness",
         fmt::format("kn {}, ks {}{}", pressure(normal, "/m"), pressure(shear, "/m"), standard));
@@ -232,11 +232,11 @@ class Facts {
 
   /// What is around the model, where waves of an earthquake meet it.
   void around() {
-    if (scenario_.boundary && scenario_.boundary->sides != simulation::Sides::frame) {
+    if (scenario_.boundary && scenario_.boundary->sides != record::Sides::frame) {
       const BoundarySpec& spec = *scenario_.boundary;
-      const char* sides = spec.sides == simulation::Sides::free_field ? "free field"
-                          : spec.sides == simulation::Sides::viscous  ? "viscous"
-                                                                      : "rollers";
+      const char* sides = spec.sides == record::Sides::free_field ? "free field"
+                          : spec.sides == record::Sides::viscous  ? "viscous"
+                                                                  : "rollers";
       add("boundary", fmt::format("{} base, {} at the sides, {}", spec.compliant ? "compliant" : "rigid",
                                   sides, spec.overburden ? "overburden" : "free top"));
     } else if (scenario_.domain && scenario_.domain->frame && is_shaken()) {
@@ -250,13 +250,13 @@ class Facts {
 
   [[nodiscard]] bool is_shaken() const {
     return std::ranges::any_of(scenario_.stages,
-                               [](const simulation::Stage& stage) { return stage.motion >= 0; });
+                               [](const record::Stage& stage) { return stage.motion >= 0; });
   }
 
   /// The motions that stages apply, once each.
   void shaking() {
     std::vector<int> seen;
-    for (const simulation::Stage& stage : scenario_.stages) {
+    for (const record::Stage& stage : scenario_.stages) {
       if (stage.motion < 0 || std::find(seen.begin(), seen.end(), stage.motion) != seen.end()) continue;
       seen.push_back(stage.motion);
       const MotionSpec& spec = scenario_.motions[static_cast<std::size_t>(stage.motion)];

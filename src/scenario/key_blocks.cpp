@@ -22,7 +22,7 @@ using nlohmann::ordered_json;
 
 constexpr double rad_per_degree = std::numbers::pi / 180.0;
 
-FaceStrength strength(const JointProperties& joint) {
+FaceStrength strength(const contact::JointProperties& joint) {
   return {std::tan(joint.friction * rad_per_degree), joint.cohesion};
 }
 
@@ -38,8 +38,8 @@ census::Input input_of(const Scenario& scenario, const BlockModel& model, double
   }
   const simulation::JointTable joints = joint_table(scenario);
   input.standard = strength(joints.standard);
-  for (const JointProperties& joint : joints.joint_sets) input.joint_sets.push_back(strength(joint));
-  for (const JointProperties& joint : joints.trace_maps) input.trace_maps.push_back(strength(joint));
+  for (const contact::JointProperties& joint : joints.joint_sets) input.joint_sets.push_back(strength(joint));
+  for (const contact::JointProperties& joint : joints.trace_maps) input.trace_maps.push_back(strength(joint));
   input.frame = strength(joints.frame);
   const bool has_frame = scenario.domain && scenario.domain->frame;
   input.rock_around = has_frame || scenario.boundary;
@@ -103,7 +103,7 @@ const char* const census_assumptions =
 
 Vec2 seismic_coefficients(const Scenario& scenario) {
   Vec2 found;
-  for (const simulation::Stage& stage : scenario.stages) {
+  for (const record::Stage& stage : scenario.stages) {
     if (stage.k_h != 0.0 || stage.k_v != 0.0) found = {stage.k_h, stage.k_v};
   }
   return found;

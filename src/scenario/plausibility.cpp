@@ -22,8 +22,8 @@
 namespace keyblock::scenario {
 namespace {
 
-using simulation::Stage;
-using simulation::StageKind;
+using record::Stage;
+using record::StageKind;
 
 // Cutting off a distribution that moves its mean by more than this share is worth a warning.
 constexpr double mean_tolerance = 0.01;
@@ -218,7 +218,7 @@ class Plausibility {
 
   // The rock cannot move along a long tunnel.
   void check_plane_state() {
-    if (scenario_.excavations.empty() || scenario_.rock.state != PlaneState::plane_stress) return;
+    if (scenario_.excavations.empty() || scenario_.rock.state != block::PlaneState::plane_stress) return;
     if (scenario_.accepted.plane_stress) return;
     warn(
         "rock.state{}: plane stress{} with an excavation is a thin slab; a long tunnel is in plane strain, "

@@ -20,7 +20,7 @@ RockKeys layered(RockKeys rock, const RockKeys& over) {
 }
 
 // A factor of 1 keeps every bit.
-void reduce_strength(JointProperties& joint, double factor) {
+void reduce_strength(contact::JointProperties& joint, double factor) {
   if (factor == 1.0) return;
   const double degree = std::numbers::pi / 180.0;
   joint.friction = std::atan(std::tan(joint.friction * degree) / factor) / degree;
@@ -31,11 +31,11 @@ void reduce_strength(JointProperties& joint, double factor) {
   joint.residual->cohesion /= factor;
 }
 
-JointProperties joint_properties(const JointKeys& own, const JointKeys& standard) {
+contact::JointProperties joint_properties(const JointKeys& own, const JointKeys& standard) {
   const auto pick = [](const std::optional<double>& first, const std::optional<double>& second) {
     return first ? first : second;
   };
-  JointProperties joint;
+  contact::JointProperties joint;
   joint.friction = pick(own.friction, standard.friction).value_or(0.0);
   joint.cohesion = pick(own.cohesion, standard.cohesion).value_or(0.0);
   joint.tension = pick(own.tension, standard.tension).value_or(0.0);

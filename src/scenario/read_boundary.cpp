@@ -8,7 +8,7 @@
 namespace keyblock::scenario {
 namespace {
 
-using simulation::Sides;
+using record::Sides;
 
 constexpr Word<bool> bases[] = {{"compliant", true}, {"rigid", false}};
 constexpr Word<bool> tops[] = {{"free", false}, {"overburden", true}};

@@ -10,7 +10,7 @@
 namespace keyblock::scenario {
 namespace {
 
-using simulation::Stage;
+using record::Stage;
 
 constexpr double not_open = -1.0;
 

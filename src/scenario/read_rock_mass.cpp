@@ -11,8 +11,8 @@
 namespace keyblock::scenario {
 namespace {
 
-constexpr Word<PlaneState> plane_states[] = {{"plane-stress", PlaneState::plane_stress},
-                                             {"plane-strain", PlaneState::plane_strain}};
+constexpr Word<block::PlaneState> plane_states[] = {{"plane-stress", block::PlaneState::plane_stress},
+                                                    {"plane-strain", block::PlaneState::plane_strain}};
 constexpr KeyKind order_kinds[] = {KeyKind::integer, KeyKind::string};
 constexpr Word<bool> boundaries[] = {{"frame", true}, {"free", false}};
 
@@ -163,7 +163,7 @@ void read_rock_mass(TableReader& root, Scenario& scenario) {
              {.meaning = "The rectangle that is cut into blocks by joint sets and trace maps. Not needed for "
                          "explicit blocks alone."},
              [&](TableReader& t) { read_domain(t, scenario); });
-  scenario.rock.state = PlaneState::plane_stress;
+  scenario.rock.state = block::PlaneState::plane_stress;
   scenario.rock.order = 1;
   root.table("rock", {.meaning = "The rock between the joints.", .required = true},
              [&](TableReader& t) { read_rock_keys(t, scenario.rock, true); });

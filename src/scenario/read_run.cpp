@@ -9,8 +9,8 @@
 namespace keyblock::scenario {
 namespace {
 
-using simulation::Stage;
-using simulation::StageKind;
+using record::Stage;
+using record::StageKind;
 
 constexpr Word<StageKind> stage_kinds[] = {
     {"settle", StageKind::settle}, {"shake", StageKind::shake}, {"rest", StageKind::rest}};
@@ -100,7 +100,7 @@ void read_equilibrium(TableReader& t, Stage& stage, bool settle) {
             .at_least = -10.0,
             .at_most = 10.0,
             .usual = &usual::coefficient}));
-  const std::string settle_steps = std::to_string(simulation::default_settle_steps);
+  const std::string settle_steps = std::to_string(record::default_settle_steps);
   t.integer("max_steps", stage.max_steps,
             only(settle, "kind = \"settle\"",
                  {.meaning = "Most static steps; the stage ends without equilibrium when they are used up.",
@@ -239,8 +239,8 @@ void read_column(TableReader& t, simulation::History& history, bool applies, con
                  .required = history.column.has_value(),
                  .fallback = "required with column"}));
   const auto has_columns = [&] {
-    return scenario.boundary && (scenario.boundary->sides == simulation::Sides::free_field ||
-                                 scenario.boundary->sides == simulation::Sides::viscous);
+    return scenario.boundary && (scenario.boundary->sides == record::Sides::free_field ||
+                                 scenario.boundary->sides == record::Sides::viscous);
   };
   if (!history.column || has_columns()) return;
   t.fail(

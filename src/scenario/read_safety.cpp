@@ -11,8 +11,8 @@
 namespace keyblock::scenario {
 namespace {
 
-using simulation::Stage;
-using simulation::StageKind;
+using record::Stage;
+using record::StageKind;
 
 constexpr const char* name_of_reduced = "strength reduced";
 /// s; what falls out of an opening has come down by then, and what it held has begun to.

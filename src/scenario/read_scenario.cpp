@@ -105,8 +105,8 @@ class Consistency {
   void check_weights() {
     if (!root_.context().mistakes.empty() || has_weights()) return;
     const auto& stages = scenario_.stages;
-    const auto settling = std::find_if(stages.begin(), stages.end(), [](const simulation::Stage& stage) {
-      return stage.kind == simulation::StageKind::settle;
+    const auto settling = std::find_if(stages.begin(), stages.end(), [](const record::Stage& stage) {
+      return stage.kind == record::StageKind::settle;
     });
     if (settling == stages.end()) return;
     const std::string key = join_path(join_path("stage", settling->name), "kind");

@@ -121,7 +121,7 @@ void read_solver(TableReader& root, Scenario& scenario) {
              [&](TableReader& t) { read_automatic_order(t, scenario.automatic); });
   // Waves keep their height by this rule, and stiff joints do not ring.
   if (scenario.boundary) scenario.solver.integrator = dynamics::TimeIntegration::generalized_alpha;
-  const bool without_ground = !scenario.boundary || scenario.boundary->sides == simulation::Sides::frame;
+  const bool without_ground = !scenario.boundary || scenario.boundary->sides == record::Sides::frame;
   root.table("solver", {.meaning = "How steps are solved. The defaults suit rock at engineering scale."},
              [&](TableReader& t) { read_solver_keys(t, scenario.solver, without_ground); });
 }

@@ -75,7 +75,7 @@ void read_vary(TableReader& t, VarySpec& vary) {
 
 void read_measure(TableReader& t, std::string& measure, std::string_view meaning) {
   if (!t.string("measure", measure, {.meaning = meaning, .required = true})) return;
-  const std::vector<std::string> names = simulation::damage_names();
+  const std::vector<std::string> names = record::damage_names();
   if (std::find(names.begin(), names.end(), measure) != names.end()) return;
   t.fail("measure", describe(*t.find("measure")), list_words(names), suggestion(measure, names));
 }

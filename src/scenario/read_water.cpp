@@ -113,7 +113,7 @@ void read_water(TableReader& root, Scenario& scenario) {
               [&](TableReader& t, WaterSpec& water) { read_one(t, water, is_alone, scenario); });
 }
 
-void read_water_of_stage(TableReader& t, simulation::Stage& stage, const Scenario& scenario) {
+void read_water_of_stage(TableReader& t, record::Stage& stage, const Scenario& scenario) {
   std::string name;
   if (!t.reference("water", name, "water",
                    {.meaning = "The water that acts from this stage on, `none` for none.",

@@ -27,7 +27,7 @@ namespace keyblock::scenario {
 /// [rock], or those of its keys that a region or a block has of its own.
 struct RockKeys {
   std::optional<double> density, young, poisson;
-  std::optional<PlaneState> state;
+  std::optional<block::PlaneState> state;
   std::optional<int> order;  ///< automatic_order: left to the program
 };
 
@@ -137,7 +137,7 @@ struct RockLayerSpec {
 /// [boundary]
 struct BoundarySpec {
   bool compliant = true;
-  simulation::Sides sides = simulation::Sides::free_field;
+  record::Sides sides = record::Sides::free_field;
   bool overburden = false;
   std::optional<double> density, vs, vp;  ///< of the half-space below
   std::vector<RockLayerSpec> column;      ///< empty: the rock of the model
@@ -234,8 +234,8 @@ struct Scenario {
   std::vector<loading::Spring> springs;
   std::vector<WaterSpec> waters;
   std::vector<simulation::History> histories;
-  std::vector<simulation::Stage> stages;    ///< indices are those of `excavations` and `motions`
-  std::vector<simulation::Stage> left_out;  ///< stages after that of [safety]
+  std::vector<record::Stage> stages;    ///< indices are those of `excavations` and `motions`
+  std::vector<record::Stage> left_out;  ///< stages after that of [safety]
   std::optional<SafetySpec> safety;
   simulation::DamageLimits damage;
   simulation::OutputOptions output;

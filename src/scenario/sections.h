@@ -32,7 +32,7 @@ void read_loading(TableReader& root, Scenario& scenario);
 /// [water], after all joints.
 void read_water(TableReader& root, Scenario& scenario);
 /// `water` of a stage.
-void read_water_of_stage(TableReader& t, simulation::Stage& stage, const Scenario& scenario);
+void read_water_of_stage(TableReader& t, record::Stage& stage, const Scenario& scenario);
 /// One [[motion]].
 void read_motion(TableReader& t, MotionSpec& motion);
 /// [time], [[stage]], [[history]], [damage], [output], and what read_solver() reads.
@@ -53,7 +53,7 @@ void end_with_reduced_strength(Scenario& scenario);
 void read_study(TableReader& root, Scenario& scenario);
 
 /// `release` and `release_steps` of a stage whose `excavate` is known. settles: they are of its kind.
-void read_release(TableReader& t, simulation::Stage& stage, bool settles, const Scenario& scenario);
+void read_release(TableReader& t, record::Stage& stage, bool settles, const Scenario& scenario);
 /// `pressure` and `arc` of an excavation.
 void read_pressure(TableReader& t, ExcavationSpec& spec);
 /// After all stages: whether pressures are of these.

@@ -23,7 +23,7 @@ constexpr double rounding = 1e-6;  // of times in files
 constexpr double slow = 1.0, fast = 10.0;  // Hz, that shake in any earthquake
 
 using loading::GroundMotion;
-using simulation::Stage;
+using record::Stage;
 
 /// s between the samples of a record, in the median; 0 where there are none.
 double sampling_step(const GroundMotion& motion) {
@@ -159,8 +159,8 @@ void warn_of_damping(const Scenario& scenario, const std::vector<GroundMotion>& 
   double least = slow, most = fast;
   bool is_dynamic = false;
   for (const Stage& stage : scenario.stages) {
-    is_dynamic |= stage.kind != simulation::StageKind::settle;
-    if (stage.kind != simulation::StageKind::shake) continue;
+    is_dynamic |= stage.kind != record::StageKind::settle;
+    if (stage.kind != record::StageKind::shake) continue;
     const double period = loading::mean_period(motions[static_cast<std::size_t>(stage.motion)]);
     if (period <= 0.0) continue;
     least = std::min(least, 1.0 / period);
@@ -209,7 +209,7 @@ const Stage* stage_of_scale(const Scenario& scenario, const std::string& key) {
   if (!path || path->size() != 3 || path->front().key != "stage" || path->back().key != "scale")
     return nullptr;
   const auto stage = std::ranges::find(scenario.stages, (*path)[1].key, &Stage::name);
-  return stage == scenario.stages.end() || stage->kind != simulation::StageKind::shake ? nullptr : &*stage;
+  return stage == scenario.stages.end() || stage->kind != record::StageKind::shake ? nullptr : &*stage;
 }
 
 /// The first of the values that seems to be a peak, or a per cent.
@@ -233,7 +233,7 @@ void add_shaking_warnings(const Scenario& scenario, const std::vector<GroundMoti
                           std::vector<std::string>& warnings) {
   std::vector<bool> seen(motions.size(), false);
   for (const Stage& stage : scenario.stages) {
-    if (stage.kind != simulation::StageKind::shake) continue;
+    if (stage.kind != record::StageKind::shake) continue;
     const auto k = static_cast<std::size_t>(stage.motion);
     if (!scenario.accepted.step && !seen[k])
       warn_of_step(scenario, scenario.motions[k], motions[k], warnings);
@@ -251,7 +251,7 @@ void add_shaking_warnings(const Scenario& scenario, const std::vector<GroundMoti
 
 std::vector<GroundFact> earthquake_facts(const Scenario& scenario, const std::vector<GroundMotion>& motions) {
   std::vector<GroundFact> facts;
-  const auto shakes = [](const Stage& s) { return s.kind == simulation::StageKind::shake; };
+  const auto shakes = [](const Stage& s) { return s.kind == record::StageKind::shake; };
   const bool several = std::ranges::count_if(scenario.stages, shakes) > 1;
   for (const Stage& stage : scenario.stages) {
     if (!shakes(stage)) continue;

@@ -13,8 +13,8 @@
 namespace keyblock::scenario {
 namespace {
 
+using record::Stage;
 using simulation::RunSetup;
-using simulation::Stage;
 
 /// Of the mean size of blocks: what moves farther has come out of its place, and what moves less has not moved.
 constexpr double most_way = 0.5, least_way = 1e-5;

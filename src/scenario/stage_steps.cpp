@@ -21,8 +21,8 @@ constexpr double whole_step_tolerance = 1e-6;
 std::vector<Diagnostic> stage_mistakes(const Scenario& scenario,
                                        const std::vector<loading::GroundMotion>& motions) {
   std::vector<Diagnostic> mistakes;
-  for (const simulation::Stage& stage : scenario.stages) {
-    if (stage.kind == simulation::StageKind::settle) continue;
+  for (const record::Stage& stage : scenario.stages) {
+    if (stage.kind == record::StageKind::settle) continue;
     const double duration =
         stage.duration ? *stage.duration : motions[static_cast<std::size_t>(stage.motion)].duration();
     const double steps = duration / scenario.time_step;
@@ -38,7 +38,7 @@ std::vector<Diagnostic> stage_mistakes(const Scenario& scenario,
 }
 
 void add_stage_warnings(const Scenario& scenario, std::vector<std::string>& warnings) {
-  for (const simulation::Stage& stage : scenario.stages) {
+  for (const record::Stage& stage : scenario.stages) {
     if (!stage.duration) continue;
     const double steps = *stage.duration / scenario.time_step;
     const double whole = simulation::step_count(*stage.duration, scenario.time_step);

@@ -69,7 +69,7 @@ class WaterChecks {
 
   // The first one acts until a stage says otherwise.
   void check_used(int k) {
-    const auto uses = [&](const simulation::Stage& stage) { return stage.water == k; };
+    const auto uses = [&](const record::Stage& stage) { return stage.water == k; };
     const bool is_first = k == 0 && (scenario_.stages.empty() || !scenario_.stages.front().water);
     if (is_first || std::ranges::any_of(scenario_.stages, uses) ||
         std::ranges::any_of(scenario_.left_out, uses))

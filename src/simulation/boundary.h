@@ -24,7 +24,7 @@ struct FarPlane {
 /// The rock around the model; see the user guide. Heights are local.
 struct Boundary {
   bool compliant = true;  ///< waves go down through the base; else it is rigid
-  Sides sides = Sides::free_field;
+  record::Sides sides = record::Sides::free_field;
   bool overburden = false;                        ///< the top of the model is below the ground …
   double depth = 0.0;                             ///< … by this, m
   Vec2 dashpots;                                  ///< Pa s/m, of the half-space below a compliant base

@@ -61,7 +61,7 @@ class Outside {
   }
   [[nodiscard]] bool is_excavated(std::size_t block) const {
     const std::vector<int>& inside = setup_.system.blocks[block].excavations;
-    return std::any_of(setup_.stages.begin(), setup_.stages.end(), [&](const Stage& stage) {
+    return std::any_of(setup_.stages.begin(), setup_.stages.end(), [&](const record::Stage& stage) {
       return std::find_first_of(inside.begin(), inside.end(), stage.excavate.begin(), stage.excavate.end()) !=
              inside.end();
     });
@@ -77,7 +77,7 @@ class Builder {
       : setup_(setup), boundary_(*setup.boundary), model_(model), outside_(setup) {}
 
   std::shared_ptr<const dynamics::Coupling> build() {
-    if (boundary_.sides != Sides::roller) add_far_rock();
+    if (boundary_.sides != record::Sides::roller) add_far_rock();
     for (std::size_t b = 0; b < setup_.system.blocks.size(); ++b) {
       if (!model_.blocks[b].fixed) add_block(b);
     }
@@ -112,13 +112,13 @@ class Builder {
            std::abs(left.dip) + std::abs(right.dip) <= alike;
   }
   void set_far(Side side, BoundaryPoint& p) const {
-    if (boundary_.sides != Sides::free_field) return;
+    if (boundary_.sides != record::Sides::free_field) return;
     p.far = side == Side::right ? static_cast<int>(far_.size()) - 1 : 0;
     p.in_far = far_[at(p.far)].column.place_of(p.place.y);
   }
   /// All of a point that its side says.
   void describe(Side side, double stiffness, BoundaryPoint& p) const {
-    const bool takes_waves = boundary_.sides != Sides::roller;
+    const bool takes_waves = boundary_.sides != record::Sides::roller;
     switch (side) {
       case Side::none:
         return;
@@ -208,9 +208,9 @@ ColumnHeights column_heights(const RunSetup& setup, ColumnSide side) {
   return {outside.box().min.y, outside.ground(side == ColumnSide::left ? Side::left : Side::right)};
 }
 
-std::vector<PlaneRecord> planes_beside(const RunSetup& setup, const dynamics::Model& model,
-                                       const dynamics::State& state) {
-  std::vector<PlaneRecord> planes;
+std::vector<record::PlaneRecord> planes_beside(const RunSetup& setup, const dynamics::Model& model,
+                                               const dynamics::State& state) {
+  std::vector<record::PlaneRecord> planes;
   if (!setup.boundary || setup.boundary->planes.empty()) return planes;
   for (std::size_t k = 0; k < model.couplings.size(); ++k) {
     const dynamics::FarField* boundary = model.couplings[k]->far_field();

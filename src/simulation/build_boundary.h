@@ -27,7 +27,7 @@ ColumnHeights column_heights(const RunSetup& setup, ColumnSide side);
 std::shared_ptr<const dynamics::Coupling> build_boundary(const RunSetup& setup, const dynamics::Model& model);
 
 /// The planes beside the model, as they are in a state.
-std::vector<PlaneRecord> planes_beside(const RunSetup& setup, const dynamics::Model& model,
-                                       const dynamics::State& state);
+std::vector<record::PlaneRecord> planes_beside(const RunSetup& setup, const dynamics::Model& model,
+                                               const dynamics::State& state);
 
 }  // namespace keyblock::simulation

@@ -42,7 +42,7 @@ block::Basis make_basis(const Polygon& polygon, const BlockProperties& propertie
 }
 
 Block make_block(const Polygon& polygon, const BlockProperties& properties, int order, int edge_order,
-                 const std::optional<InSituStress>& in_situ) {
+                 const std::optional<block::InSituStress>& in_situ) {
   const block::Basis basis = make_basis(polygon, properties, order);
   Block block{.fixed = properties.fixed,
               .area = area(polygon),

@@ -139,13 +139,13 @@ std::shared_ptr<const dynamics::Coupling> joint_water(const RunSetup& setup, con
                                                 watered_blocks(setup, model), model.surface, model.reference);
 }
 
-std::optional<WaterRecord> water_record(const Model& model, const dynamics::State& state) {
+std::optional<record::WaterRecord> water_record(const Model& model, const dynamics::State& state) {
   const dynamics::WaterOfModel water = dynamics::water_of(model, state);
   if (water.water == nullptr) return std::nullopt;
   dynamics::WaterTotals totals = water.water->totals(model, state, water.memory);
   if (!totals.acts) return std::nullopt;
-  return WaterRecord{std::move(totals.name), totals.largest_pressure, totals.wet, totals.drained,
-                     std::move(totals.forces)};
+  return record::WaterRecord{std::move(totals.name), totals.largest_pressure, totals.wet, totals.drained,
+                             std::move(totals.forces)};
 }
 
 int water_in(const RunSetup& setup, std::size_t k) {

@@ -14,7 +14,7 @@ namespace keyblock::simulation {
 std::shared_ptr<const dynamics::Coupling> joint_water(const RunSetup& setup, const dynamics::Model& model);
 
 /// What the water does where blocks are; nothing where none acts.
-std::optional<WaterRecord> water_record(const dynamics::Model& model, const dynamics::State& state);
+std::optional<record::WaterRecord> water_record(const dynamics::Model& model, const dynamics::State& state);
 
 /// Which of the waters acts in stage k, by its index: that of the stage, else of the last one before it that chose, else the first. −1: none.
 int water_in(const RunSetup& setup, std::size_t k);

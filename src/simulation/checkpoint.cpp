@@ -35,7 +35,7 @@ std::uint64_t fingerprint(const RunSetup& setup) {
 
 template <typename Archive, typename WaitOrConst>
 void transfer_wait(Archive& archive, WaitOrConst& s) {
-  StageWait wait = s.value_or(StageWait{});
+  record::StageWait wait = s.value_or(record::StageWait{});
   archive(wait.what);
   archive(wait.until);
   if constexpr (!std::is_const_v<WaitOrConst>) {
@@ -45,8 +45,8 @@ void transfer_wait(Archive& archive, WaitOrConst& s) {
 
 template <typename Archive, typename StageRecordOrConst>
 void transfer_stage(Archive& archive, StageRecordOrConst& s) {
-  visit_stage(s, [&](const StageField&, auto& value) {
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, std::optional<StageWait>>)
+  record::visit_stage(s, [&](const record::StageField&, auto& value) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, std::optional<record::StageWait>>)
       transfer_wait(archive, value);
     else
       archive(value);
@@ -179,7 +179,7 @@ RunState read_state(ArchiveReader& archive, const RunSetup& setup) {
   archive(stages);
   if (stages > setup.stages.size()) throw ArchiveError();
   state.record.stages.resize(stages);
-  for (StageRecord& stage : state.record.stages) transfer_stage(archive, stage);
+  for (record::StageRecord& stage : state.record.stages) transfer_stage(archive, stage);
   if (!archive.at_end()) throw ArchiveError();
   return state;
 }
@@ -197,7 +197,7 @@ void write_checkpoint(const std::filesystem::path& directory, const RunSetup& se
   archive(fingerprint(setup));
   transfer(archive, state);
   archive(static_cast<std::uint64_t>(state.record.stages.size()));
-  for (const StageRecord& stage : state.record.stages) transfer_stage(archive, stage);
+  for (const record::StageRecord& stage : state.record.stages) transfer_stage(archive, stage);
   archive.finish();
   file.commit();
 }

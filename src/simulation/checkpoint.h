@@ -32,8 +32,8 @@ struct RunState {
   double initial_energy = 0.0;  ///< J
   double wall_time = 0.0;       ///< s
   long iterations = 0;
-  Reported reported;
-  RunRecord record;  ///< what has been summed up so far, with the stages that have ended
+  record::Reported reported;
+  record::RunRecord record;  ///< what has been summed up so far, with the stages that have ended
 };
 
 std::filesystem::path checkpoint_path(const std::filesystem::path& directory);

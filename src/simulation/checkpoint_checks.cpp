@@ -128,8 +128,8 @@ bool are_walls(const State& s, const RunSetup& setup, const Model& model) {
          });
 }
 
-bool are_points(std::span<const ReleasePoint> points, const RunSetup& setup) {
-  return std::all_of(points.begin(), points.end(), [&](const ReleasePoint& p) {
+bool are_points(std::span<const record::ReleasePoint> points, const RunSetup& setup) {
+  return std::all_of(points.begin(), points.end(), [&](const record::ReleasePoint& p) {
     return is_place(p.excavation, setup.excavations.size()) && std::isfinite(p.released) &&
            are_counts({p.step});
   });
@@ -206,11 +206,12 @@ bool is_settler(const Settler::Memory& s, std::size_t blocks) {
          std::all_of(s.inertia_scale.begin(), s.inertia_scale.end(), [](double x) { return x >= 1.0; });
 }
 
-bool is_record(const StageRecord& record, const Stage& stage, const RunSetup& setup, std::size_t blocks) {
-  const Stage& s = record.stage;
+bool is_record(const record::StageRecord& record, const record::Stage& stage, const RunSetup& setup,
+               std::size_t blocks) {
+  const record::Stage& s = record.stage;
   return s.name == stage.name && s.kind == stage.kind && s.excavate == stage.excavate &&
          s.install == stage.install && s.motion == stage.motion && are_counts({record.steps}) &&
-         has_known_blocks(record, blocks) && are_points(record.release, setup) &&
+         record::has_known_blocks(record, blocks) && are_points(record.release, setup) &&
          record.motion_time.size() == record.motion.size();
 }
 
@@ -220,8 +221,8 @@ bool is_still(const Stillness::Memory& still, const Model& model) {
 }
 
 bool has_counts(const RunState& state) {
-  const OpenCloseStatistics& s = state.record.open_close;
-  const Reported& r = state.reported;
+  const record::OpenCloseStatistics& s = state.record.open_close;
+  const record::Reported& r = state.reported;
   return are_counts({state.stage_step, state.iterations, s.max_iterations, s.retried_steps,
                      s.unconverged_steps, s.last_converged_step, state.record.contact_checks.across_gaps,
                      r.frames, r.contacts, r.histories, r.steps, r.stages}) &&
@@ -244,12 +245,12 @@ bool are_records(const RunState& state, const RunSetup& setup, std::size_t block
 }
 
 /// Places where blocks overlap, or press across a gap.
-bool are_overlaps(const RunRecord& record, std::size_t blocks) {
-  const ContactChecks& vertices = record.contact_checks;
+bool are_overlaps(const record::RunRecord& record, std::size_t blocks) {
+  const record::ContactChecks& vertices = record.contact_checks;
   const auto is_known = [&](int b) { return b == -1 || is_place(b, blocks); };
   return std::ranges::all_of(
       std::array{&record.max_overlap, &vertices.farthest, &vertices.deepest, &vertices.unexplained},
-      [&](const OverlapRecord* o) { return is_known(o->block_a) && is_known(o->block_b); });
+      [&](const record::OverlapRecord* o) { return is_known(o->block_a) && is_known(o->block_b); });
 }
 
 /// Largest forces of all elements, or of none before the first step.
@@ -296,7 +297,8 @@ std::string mistake_in_state(const RunState& state, const RunSetup& setup, const
   if (!are_supports(state.mechanics.installed, setup)) return "supports that are not of this run";
   if (!are_peaks(state.peaks, setup, model)) return "forces of elements that are not of this run";
   if (!is_damage(state.damage, setup, model)) return "measures of damage that cannot be";
-  const bool settles = state.stage_step > 0 && setup.stages[at(state.stage)].kind == StageKind::settle;
+  const bool settles =
+      state.stage_step > 0 && setup.stages[at(state.stage)].kind == record::StageKind::settle;
   if (settles && !is_settler(state.settler, blocks)) return "a settling stage that cannot be";
   if (!is_still(state.still, model)) return "places of other vertices";
   if (const std::string mistake = mistake_in_control(state.control, model); !mistake.empty()) return mistake;

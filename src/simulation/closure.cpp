@@ -66,11 +66,11 @@ Diameter diameter_of(const Ring& outline, Vec2 direction, const dynamics::Model&
 }
 
 double closure(const Diameter& d, const dynamics::Model& model, const dynamics::State& state,
-               std::span<const BlockStatus> status) {
+               std::span<const record::BlockStatus> status) {
   const std::optional<double> now = length(d, model, state);
   if (!now) return d.closure;
   const bool fell = std::any_of(std::begin(d.blocks), std::end(d.blocks),
-                                [&](int b) { return status[at(b)] == BlockStatus::fallen; });
+                                [&](int b) { return status[at(b)] == record::BlockStatus::fallen; });
   return fell ? std::numeric_limits<double>::quiet_NaN() : d.length - *now;
 }
 

@@ -24,6 +24,6 @@ Diameter diameter_of(const Ring& outline, Vec2 direction, const dynamics::Model&
 /// m, by how much the ends of a diameter have come nearer. Where the block of one is excavated, or none holds it, `d.closure`; else NaN
 /// while one of them is on a block that has fallen. `status`: of every block now.
 double closure(const Diameter& d, const dynamics::Model& model, const dynamics::State& state,
-               std::span<const BlockStatus> status);
+               std::span<const record::BlockStatus> status);
 
 }  // namespace keyblock::simulation

@@ -13,10 +13,13 @@
 #include "model/model.h"
 #include "model/state.h"
 
+namespace keyblock::record {
+struct Stage;
+}
+
 namespace keyblock::simulation {
 
 struct RunSetup;
-struct Stage;
 
 /// Strength of a joint, as in contact::JointLaw.
 struct Strength {
@@ -57,7 +60,7 @@ struct ControlMemory {
 class Control {
  public:
   /// stage: the one at hand.
-  Control(const RunSetup& setup, const Stage& stage, dynamics::Model& model, dynamics::State& state,
+  Control(const RunSetup& setup, const record::Stage& stage, dynamics::Model& model, dynamics::State& state,
           dynamics::Stepper& stepper, ControlMemory& memory)
       : setup_(setup), stage_(stage), model_(model), state_(state), stepper_(stepper), memory_(memory) {}
 
@@ -104,7 +107,7 @@ class Control {
   void check_contact(const contact::ContactStrength& strength) const;
 
   const RunSetup& setup_;
-  const Stage& stage_;
+  const record::Stage& stage_;
   dynamics::Model& model_;
   dynamics::State& state_;
   dynamics::Stepper& stepper_;

@@ -89,7 +89,7 @@ std::optional<double> DamageGauge::opening_width() const {
 }
 
 void DamageGauge::open(std::span<const int> excavations, const dynamics::State& state) {
-  const std::vector<BlockStatus> status_now = status(state);
+  const std::vector<record::BlockStatus> status_now = status(state);
   for (Diameter* d : {&reference_.height, &reference_.width})
     d->closure = closure(*d, model_, state, status_now);  // 0 before the start
   for (const int e : excavations) reference_.open[at(e)] = 1;
@@ -142,19 +142,19 @@ bool DamageGauge::is_beyond_fall(std::size_t block, const dynamics::State& state
   return fall > 0.0 && norm(displacement(block, state)) > fall;
 }
 
-std::vector<BlockStatus> DamageGauge::status(const dynamics::State& state) const {
-  std::vector<BlockStatus> status(model_.blocks.size(), BlockStatus::in_place);
+std::vector<record::BlockStatus> DamageGauge::status(const dynamics::State& state) const {
+  std::vector<record::BlockStatus> status(model_.blocks.size(), record::BlockStatus::in_place);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (!model_.surface.present[b]) status[b] = BlockStatus::excavated;
+    if (!model_.surface.present[b]) status[b] = record::BlockStatus::excavated;
     if (!started() || !model_.moves(b)) continue;
     const dynamics::Block& block = model_.blocks[b];
     const Vec2 moved = displacement(b, state);
     if (norm(moved) <= setup_.damage.loosened_distance && moving_[b] == 0) continue;
-    status[b] = BlockStatus::loosened;
+    status[b] = record::BlockStatus::loosened;
     const double fall = fall_distance(block);
     if (fall <= 0.0 || norm(moved) <= fall) continue;
     if (dot(moved, down()) > fall || openings_.area_inside(polygon_on_base(b, state)) > 0.5 * block.area)
-      status[b] = BlockStatus::fallen;
+      status[b] = record::BlockStatus::fallen;
   }
   return status;
 }
@@ -166,26 +166,27 @@ double DamageGauge::speed(std::size_t b, const dynamics::State& state) const {
   return norm(velocity - base_.velocity(state, block.centroid));
 }
 
-void DamageGauge::name_moving(std::span<const MovingBlock> moving) {
+void DamageGauge::name_moving(std::span<const record::MovingBlock> moving) {
   moving_.assign(model_.blocks.size(), 0);
-  for (const MovingBlock& block : moving) moving_[at(block.block)] = 1;
+  for (const record::MovingBlock& block : moving) moving_[at(block.block)] = 1;
 }
 
-void DamageGauge::find_movers(const dynamics::State& state, StageRecord& record) const {
+void DamageGauge::find_movers(const dynamics::State& state, record::StageRecord& record) const {
   std::vector<int> blocks;
-  for (const FallenBlock& block : record.fallen) blocks.push_back(block.block);
+  for (const record::FallenBlock& block : record.fallen) blocks.push_back(block.block);
   const bool anything_fell = !blocks.empty();
-  for (const MovingBlock& block : record.moving)
+  for (const record::MovingBlock& block : record.moving)
     if (!anything_fell) blocks.push_back(block.block);
   if (blocks.empty() && record.unstable_block >= 0) blocks.push_back(record.unstable_block);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
     const double v = speed(b, state);
     record.largest_speed = std::max(record.largest_speed, v);
-    if (v > setup_.damage.loosened_distance && !anything_fell && record.stage.kind != StageKind::settle)
+    if (v > setup_.damage.loosened_distance && !anything_fell &&
+        record.stage.kind != record::StageKind::settle)
       blocks.push_back(static_cast<int>(b));
   }
-  Movers& movers = record.movers;
+  record::Movers& movers = record.movers;
   for (const int b : blocks) {
     const double weight = model_.blocks[at(b)].mass() * norm(model_.gravity);
     ++movers.blocks;
@@ -201,19 +202,19 @@ void DamageGauge::watch(const dynamics::State& state) {
   if (started()) joints_.watch(status(state));
 }
 
-std::vector<FallenBlock> DamageGauge::fallen(std::span<const BlockStatus> status) const {
-  std::vector<FallenBlock> fallen;
+std::vector<record::FallenBlock> DamageGauge::fallen(std::span<const record::BlockStatus> status) const {
+  std::vector<record::FallenBlock> fallen;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (status[b] != BlockStatus::fallen) continue;
+    if (status[b] != record::BlockStatus::fallen) continue;
     const dynamics::Block& block = model_.blocks[b];
     const Openings::Place place = openings_.behind_walls(block.reference, down());
     fallen.push_back({static_cast<int>(b), block.area, block.mass() * norm(model_.gravity),
-                      place.part == WallPart::none ? not_a_number : place.depth, place.part});
+                      place.part == record::WallPart::none ? not_a_number : place.depth, place.part});
   }
   return fallen;
 }
 
-void DamageGauge::measure_way(std::size_t b, const dynamics::State& state, Damage& damage) const {
+void DamageGauge::measure_way(std::size_t b, const dynamics::State& state, record::Damage& damage) const {
   damage.displacement_max = std::max(damage.displacement_max, norm(displacement(b, state)));
   if (!reference_.of_stage.empty())
     damage.stage_displacement =
@@ -222,18 +223,19 @@ void DamageGauge::measure_way(std::size_t b, const dynamics::State& state, Damag
   damage.rotation_max = std::max(damage.rotation_max, std::abs(turned) * 180.0 / std::numbers::pi);
 }
 
-Damage DamageGauge::measure(const dynamics::State& state) {
-  Damage damage;
+record::Damage DamageGauge::measure(const dynamics::State& state) {
+  record::Damage damage;
   if (!started()) return damage;
-  const std::vector<BlockStatus> status_now = status(state);
+  const std::vector<record::BlockStatus> status_now = status(state);
   double inside = 0.0;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
     measure_way(b, state, damage);
     const bool goes = moving_[b] != 0 || speed(b, state) > setup_.damage.loosened_distance;
-    if (goes || status_now[b] == BlockStatus::fallen) damage.moving_area += model_.blocks[b].area;
-    if (status_now[b] == BlockStatus::loosened) damage.loosened_area += model_.blocks[b].area;
-    if (status_now[b] != BlockStatus::in_place) inside += openings_.area_inside(polygon_on_base(b, state));
+    if (goes || status_now[b] == record::BlockStatus::fallen) damage.moving_area += model_.blocks[b].area;
+    if (status_now[b] == record::BlockStatus::loosened) damage.loosened_area += model_.blocks[b].area;
+    if (status_now[b] != record::BlockStatus::in_place)
+      inside += openings_.area_inside(polygon_on_base(b, state));
   }
   const double openings = openings_.area();
   if (openings > 0.0)
@@ -241,18 +243,18 @@ Damage DamageGauge::measure(const dynamics::State& state) {
   else
     damage.fallen_depth = damage.fallen_depth_crown = damage.fallen_depth_left = damage.fallen_depth_right =
         damage.fallen_depth_invert = not_a_number;
-  const std::vector<FallenBlock> fallen_now = fallen(status_now);
-  for (const FallenBlock& block : fallen_now) {
+  const std::vector<record::FallenBlock> fallen_now = fallen(status_now);
+  for (const record::FallenBlock& block : fallen_now) {
     ++damage.fallen_blocks;
     damage.fallen_area += block.area;
     damage.fallen_weight += block.weight;
   }
-  set_extremes(fallen_now, damage);
+  record::set_extremes(fallen_now, damage);
   damage.largest_block_pressure = openings > 0.0 ? 0.0 : not_a_number;
-  for (const FallenBlock& block : fallen_now) {
+  for (const record::FallenBlock& block : fallen_now) {
     if (openings == 0.0 || block.area < damage.largest_fallen_area) continue;
     const Polygon& place = model_.blocks[static_cast<std::size_t>(block.block)].reference;
-    damage.largest_block_pressure = block.weight / width_along_wall(place, block.part, down());
+    damage.largest_block_pressure = block.weight / record::width_along_wall(place, block.part, down());
     break;
   }
   joints_.watch(status_now);
@@ -262,12 +264,12 @@ Damage DamageGauge::measure(const dynamics::State& state) {
   return damage;
 }
 
-void DamageGauge::describe(const dynamics::State& state, StageRecord& record) {
+void DamageGauge::describe(const dynamics::State& state, record::StageRecord& record) {
   record.damage = measure(state);
   record.fallen = fallen(status(state));
   find_movers(state, record);
   if (setup_.excavations.empty())
-    record.standing = standing_of(record, setup_.damage.loosened_distance, false);
+    record.standing = record::standing_of(record, setup_.damage.loosened_distance, false);
 }
 
 }  // namespace keyblock::simulation

@@ -43,15 +43,15 @@ class DamageGauge {
 
   /// Blocks that a static stage calls moving, at its end: they would go beyond any distance, and are held where they were named. They count as
   /// loosened until this is called again.
-  void name_moving(std::span<const MovingBlock> moving);
+  void name_moving(std::span<const record::MovingBlock> moving);
 
   /// A look, and all measures.
-  [[nodiscard]] Damage measure(const dynamics::State& state);
-  [[nodiscard]] std::vector<BlockStatus> status(const dynamics::State& state) const;
+  [[nodiscard]] record::Damage measure(const dynamics::State& state);
+  [[nodiscard]] std::vector<record::BlockStatus> status(const dynamics::State& state) const;
   /// The blocks of this status that have fallen.
-  [[nodiscard]] std::vector<FallenBlock> fallen(std::span<const BlockStatus> status) const;
+  [[nodiscard]] std::vector<record::FallenBlock> fallen(std::span<const record::BlockStatus> status) const;
   /// All that the record of a stage that has ended tells of damage.
-  void describe(const dynamics::State& state, StageRecord& record);
+  void describe(const dynamics::State& state, record::StageRecord& record);
   [[nodiscard]] const JointGauge& joints() const { return joints_; }
   [[nodiscard]] std::optional<double> opening_width() const;
   /// Whether a block has moved by more than the distance of a fall, wherever to.
@@ -80,9 +80,9 @@ class DamageGauge {
   [[nodiscard]] Vec2 down() const;
   /// m/s, of a centroid against the base.
   [[nodiscard]] double speed(std::size_t block, const dynamics::State& state) const;
-  void find_movers(const dynamics::State& state, StageRecord& record) const;
+  void find_movers(const dynamics::State& state, record::StageRecord& record) const;
   /// How far a block has gone and turned.
-  void measure_way(std::size_t block, const dynamics::State& state, Damage& damage) const;
+  void measure_way(std::size_t block, const dynamics::State& state, record::Damage& damage) const;
   /// m; 0: nothing falls.
   [[nodiscard]] double fall_distance(const dynamics::Block& block) const;
   /// m, of a centroid less the displacement of the base.

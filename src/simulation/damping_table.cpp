@@ -14,7 +14,7 @@ namespace {
 double of_blocks(const RunSetup& setup, double frequency) {
   double area = 0.0, slowness = 0.0;
   for (std::size_t b = 0; b < setup.properties.size(); ++b) {
-    const Material& rock = setup.properties[b].material;
+    const block::Material& rock = setup.properties[b].material;
     const double of_block = keyblock::area(setup.system.blocks[b].polygon);
     area += of_block;
     slowness += of_block * std::sqrt(rock.density / rock.young);
@@ -26,10 +26,11 @@ double of_blocks(const RunSetup& setup, double frequency) {
 
 }  // namespace
 
-std::vector<DampingRow> damping_table(const RunSetup& setup) {
-  const bool is_dynamic = std::any_of(setup.stages.begin(), setup.stages.end(),
-                                      [](const Stage& s) { return s.kind != StageKind::settle; });
-  std::vector<DampingRow> rows;
+std::vector<record::DampingRow> damping_table(const RunSetup& setup) {
+  const bool is_dynamic = std::any_of(setup.stages.begin(), setup.stages.end(), [](const record::Stage& s) {
+    return s.kind != record::StageKind::settle;
+  });
+  std::vector<record::DampingRow> rows;
   if (!is_dynamic) return rows;
   const auto rule = dynamics::Integrator::of(setup.solver);
   for (const double frequency : {1.0, 3.0, 10.0, 30.0}) {

@@ -37,20 +37,20 @@ std::size_t element_count(const Model& model) {
   return count;
 }
 
-void measure_elements(const Model& model, const std::vector<ElementPeak>& peaks, Damage& damage) {
+void measure_elements(const Model& model, const std::vector<ElementPeak>& peaks, record::Damage& damage) {
   damage.yielded_elements = 0;
   damage.largest_utilization = std::nan("");
-  const std::vector<ElementDescription> all = element_descriptions(model);
+  const std::vector<record::ElementDescription> all = element_descriptions(model);
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (!std::isfinite(all[k].limit)) continue;
     const double peak = k < peaks.size() ? peaks[k].force : 0.0;
-    damage.yielded_elements += reaches_limit(peak, all[k].limit) ? 1 : 0;
+    damage.yielded_elements += record::reaches_limit(peak, all[k].limit) ? 1 : 0;
     damage.largest_utilization = std::fmax(damage.largest_utilization, peak / all[k].limit);
   }
 }
 
-std::vector<ElementDescription> element_descriptions(const Model& model) {
-  std::vector<ElementDescription> all;
+std::vector<record::ElementDescription> element_descriptions(const Model& model) {
+  std::vector<record::ElementDescription> all;
   for (const auto& coupling : model.couplings) {
     for (const dynamics::Element& e : coupling->elements())
       all.push_back({e.name, e.kind, e.limit, e.from.place, e.to.place, e.from.block, e.to.block});
@@ -58,8 +58,8 @@ std::vector<ElementDescription> element_descriptions(const Model& model) {
   return all;
 }
 
-std::vector<ElementState> element_states(const Model& model, const State& state) {
-  std::vector<ElementState> all;
+std::vector<record::ElementState> element_states(const Model& model, const State& state) {
+  std::vector<record::ElementState> all;
   for_carried(model, state, [&](const auto& /*coupling*/, const std::vector<Carried>& carried) {
     for (const Carried& c : carried)
       all.push_back({c.from, c.to, c.force, c.elongation, c.yielded, c.present});
@@ -68,9 +68,9 @@ std::vector<ElementState> element_states(const Model& model, const State& state)
 }
 
 int element_of(const Model& model, const History& history) {
-  const std::vector<ElementDescription> all = element_descriptions(model);
-  const auto found = std::ranges::find(all, history.element, &ElementDescription::name);
-  const auto count = std::ranges::count(all, history.element, &ElementDescription::name);
+  const std::vector<record::ElementDescription> all = element_descriptions(model);
+  const auto found = std::ranges::find(all, history.element, &record::ElementDescription::name);
+  const auto count = std::ranges::count(all, history.element, &record::ElementDescription::name);
   if (count == 1) return static_cast<int>(found - all.begin());
   const std::string key = fmt::format("history.{}.element", history.name);
   if (count > 1)
@@ -101,10 +101,10 @@ void keep_peaks(const Model& model, const State& state, int stage, std::vector<E
   });
 }
 
-std::vector<ElementRecord> element_records(const Model& model, const State& state,
-                                           const std::vector<ElementPeak>& peaks,
-                                           const std::vector<Stage>& stages) {
-  std::vector<ElementRecord> records;
+std::vector<record::ElementRecord> element_records(const Model& model, const State& state,
+                                                   const std::vector<ElementPeak>& peaks,
+                                                   const std::vector<record::Stage>& stages) {
+  std::vector<record::ElementRecord> records;
   for_carried(model, state, [&](const dynamics::Coupling& coupling, const std::vector<Carried>& carried) {
     const std::vector<dynamics::Element> elements = coupling.elements();
     for (std::size_t i = 0; i < elements.size(); ++i) {

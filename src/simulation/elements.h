@@ -23,15 +23,16 @@ struct ElementPeak {
 void keep_peaks(const dynamics::Model& model, const dynamics::State& state, int stage,
                 std::vector<ElementPeak>& peaks);
 /// All elements of a model, in the order of its couplings. stages: of the run.
-std::vector<ElementRecord> element_records(const dynamics::Model& model, const dynamics::State& state,
-                                           const std::vector<ElementPeak>& peaks,
-                                           const std::vector<Stage>& stages);
+std::vector<record::ElementRecord> element_records(const dynamics::Model& model, const dynamics::State& state,
+                                                   const std::vector<ElementPeak>& peaks,
+                                                   const std::vector<record::Stage>& stages);
 /// Measures of damage that elements have.
-void measure_elements(const dynamics::Model& model, const std::vector<ElementPeak>& peaks, Damage& damage);
+void measure_elements(const dynamics::Model& model, const std::vector<ElementPeak>& peaks,
+                      record::Damage& damage);
 std::size_t element_count(const dynamics::Model& model);
-std::vector<ElementDescription> element_descriptions(const dynamics::Model& model);
+std::vector<record::ElementDescription> element_descriptions(const dynamics::Model& model);
 /// What they carry now, in the same order.
-std::vector<ElementState> element_states(const dynamics::Model& model, const dynamics::State& state);
+std::vector<record::ElementState> element_states(const dynamics::Model& model, const dynamics::State& state);
 /// The element that a history follows, by its name. Throws InputError where there is none.
 int element_of(const dynamics::Model& model, const History& history);
 

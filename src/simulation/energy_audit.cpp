@@ -24,7 +24,7 @@ double unseen_energy(const dynamics::Model& model) {
   return sum;
 }
 
-double largest_but_numerical(const dynamics::Model& model, const Energy& e) {
+double largest_but_numerical(const dynamics::Model& model, const record::Energy& e) {
   double largest = unseen_energy(model);
   for (const double term :
        {e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.damping, e.radiated, e.input, e.water})
@@ -39,9 +39,9 @@ double stored_energy(const dynamics::Model& model, const dynamics::State& state)
          dynamics::gravity_energy(model, state) + dynamics::spring_energy(state);
 }
 
-Energy energy_audit(const dynamics::Model& model, const dynamics::State& state, double initial) {
+record::Energy energy_audit(const dynamics::Model& model, const dynamics::State& state, double initial) {
   const dynamics::EnergyLedger& ledger = state.ledger;
-  Energy e;
+  record::Energy e;
   e.kinetic = dynamics::kinetic_energy(model, state);
   e.strain = dynamics::strain_energy(model, state);
   e.contact = dynamics::spring_energy(state);
@@ -59,7 +59,8 @@ Energy energy_audit(const dynamics::Model& model, const dynamics::State& state, 
   return e;
 }
 
-void watch_made(const dynamics::Model& model, const Energy& energy, double time, MadeEnergy& made) {
+void watch_made(const dynamics::Model& model, const record::Energy& energy, double time,
+                record::MadeEnergy& made) {
   made.highest = std::max(made.highest, energy.numerical);
   made.largest = std::max(made.largest, largest_but_numerical(model, energy));
   const double now = made.highest - energy.numerical, ratio = now / made.largest;

@@ -10,9 +10,10 @@ double stored_energy(const dynamics::Model& model, const dynamics::State& state)
 
 /// Where the energy of a run is and where it went. All potentials count from the start of the run, when `initial` was stored, J per
 /// thickness.
-Energy energy_audit(const dynamics::Model& model, const dynamics::State& state, double initial);
+record::Energy energy_audit(const dynamics::Model& model, const dynamics::State& state, double initial);
 
 /// Looks at what the time integration has made until now.
-void watch_made(const dynamics::Model& model, const Energy& energy, double time, MadeEnergy& made);
+void watch_made(const dynamics::Model& model, const record::Energy& energy, double time,
+                record::MadeEnergy& made);
 
 }  // namespace keyblock::simulation

@@ -6,8 +6,9 @@
 
 namespace keyblock::simulation {
 
-void excavate(const RunSetup& setup, const Stage& stage, dynamics::Model& model, dynamics::State& state,
-              dynamics::Stepper& stepper, DamageGauge& gauge, const StagedOpening& opening) {
+void excavate(const RunSetup& setup, const record::Stage& stage, dynamics::Model& model,
+              dynamics::State& state, dynamics::Stepper& stepper, DamageGauge& gauge,
+              const StagedOpening& opening) {
   if (stage.excavate.empty()) return;
   opening.keep_forces(stage, state, stepper);
   const double before = stored_energy(model, state);

@@ -164,7 +164,7 @@ class Finder {
   /// What a joint of a course is in the rock beside a side.
   [[nodiscard]] RockPlane plane_at(const Course& course, ColumnSide side) const {
     const JointPiece& piece = pieces_[course.pieces.front()];
-    const JointProperties& joint = joint_of(setup_.joints, piece.label);
+    const contact::JointProperties& joint = joint_of(setup_.joints, piece.label);
     const bool is_start = side == course.side;
     RockPlane plane{.height = is_start ? course.height : course.end_height,
                     .dip = is_start ? course.dip : course.end_dip,
@@ -222,8 +222,8 @@ class Finder {
     }
     if (watched.empty()) return;
     const auto rule = dynamics::Integrator::of(setup_.solver);
-    for (const Stage& stage : setup_.stages) {
-      if (stage.kind != StageKind::shake) continue;
+    for (const record::Stage& stage : setup_.stages) {
+      if (stage.kind != record::StageKind::shake) continue;
       const loading::GroundMotion& motion = setup_.motions.at(static_cast<std::size_t>(stage.motion));
       std::vector<double> memory(column.memory_size(), 0.0);
       const double dt = setup_.time_step, steps = step_count(stage.duration.value_or(motion.duration()), dt);
@@ -274,7 +274,7 @@ class Finder {
 }  // namespace
 
 FarJoints far_joints(const RunSetup& setup, std::span<const JointPiece> pieces) {
-  if (setup.boundary->sides != Sides::free_field) return {{}, {}, {pieces.begin(), pieces.end()}};
+  if (setup.boundary->sides != record::Sides::free_field) return {{}, {}, {pieces.begin(), pieces.end()}};
   return Finder(setup, pieces).find();
 }
 

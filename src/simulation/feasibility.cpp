@@ -36,7 +36,7 @@ double largest(const block::Stress& stress) {
 std::vector<double> stresses(const RunSetup& setup, double height) {
   const double g = norm(setup.gravity);
   const bool excavates =
-      std::ranges::any_of(setup.stages, [](const Stage& stage) { return !stage.excavate.empty(); });
+      std::ranges::any_of(setup.stages, [](const record::Stage& stage) { return !stage.excavate.empty(); });
   std::vector<double> stress(setup.properties.size(), 0.0);
   for (std::size_t b = 0; b < stress.size(); ++b) {
     const BlockProperties& of_block = setup.properties[b];
@@ -52,12 +52,12 @@ std::vector<double> stresses(const RunSetup& setup, double height) {
 /// Pa/m, of the joints that give a stiffness; infinite where none does.
 double softest_joint(const RunSetup& setup) {
   double softest = HUGE_VAL;
-  const auto see = [&](const JointProperties& joint) {
+  const auto see = [&](const contact::JointProperties& joint) {
     softest = std::min(softest, joint.normal_stiffness.value_or(HUGE_VAL));
   };
   see(setup.joints.standard);
-  for (const JointProperties& joint : setup.joints.joint_sets) see(joint);
-  for (const JointProperties& joint : setup.joints.trace_maps) see(joint);
+  for (const contact::JointProperties& joint : setup.joints.joint_sets) see(joint);
+  for (const contact::JointProperties& joint : setup.joints.trace_maps) see(joint);
   return softest;
 }
 

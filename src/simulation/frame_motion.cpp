@@ -7,13 +7,13 @@ namespace keyblock::simulation {
 namespace {
 
 /// Moves on by a time in a stage, s.
-void go_on(const RunSetup& setup, const Stage& stage, double time, dynamics::GroundMove& frame) {
-  if (stage.kind == StageKind::settle) {
+void go_on(const RunSetup& setup, const record::Stage& stage, double time, dynamics::GroundMove& frame) {
+  if (stage.kind == record::StageKind::settle) {
     frame.velocity = {};
     return;
   }
   frame.displacement += time * frame.velocity;
-  if (stage.kind != StageKind::shake) return;
+  if (stage.kind != record::StageKind::shake) return;
   const loading::GroundMotion& motion = setup.motions.at(at(stage.motion));
   frame.displacement += stage.scale * motion.displacement(time);
   frame.velocity += stage.scale * motion.velocity(time);
@@ -23,7 +23,7 @@ void go_on(const RunSetup& setup, const Stage& stage, double time, dynamics::Gro
 
 dynamics::GroundMove frame_motion(const RunSetup& setup, const RunState& now) {
   dynamics::GroundMove frame;
-  for (const StageRecord& ended : now.record.stages) go_on(setup, ended.stage, ended.duration, frame);
+  for (const record::StageRecord& ended : now.record.stages) go_on(setup, ended.stage, ended.duration, frame);
   if (at(now.stage) < setup.stages.size() && now.record.stages.size() == at(now.stage))
     go_on(setup, setup.stages[at(now.stage)], now.mechanics.time - now.stage_start, frame);
   return frame;

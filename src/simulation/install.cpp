@@ -7,7 +7,7 @@
 
 namespace keyblock::simulation {
 
-void install(const RunSetup& setup, const Stage& stage, const dynamics::Model& model,
+void install(const RunSetup& setup, const record::Stage& stage, const dynamics::Model& model,
              dynamics::State& state) {
   if (stage.install.empty()) return;
   std::vector<std::uint8_t> now(setup.staged_supports.size(), 0);

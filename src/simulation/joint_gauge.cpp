@@ -37,13 +37,13 @@ JointGauge::Offset JointGauge::offset(const Piece& piece) const {
   return {dot(tangent, apart), dot(Vec2{tangent.y, -tangent.x}, apart)};
 }
 
-bool JointGauge::in_place(const Piece& piece, std::span<const BlockStatus> status) const {
+bool JointGauge::in_place(const Piece& piece, std::span<const record::BlockStatus> status) const {
   const std::size_t a = at(model_.surface.block[at(piece.vertex)]),
                     b = at(model_.surface.block[at(piece.edge)]);
-  return status[a] < BlockStatus::fallen && status[b] < BlockStatus::fallen;
+  return status[a] < record::BlockStatus::fallen && status[b] < record::BlockStatus::fallen;
 }
 
-void JointGauge::watch(std::span<const BlockStatus> status) {
+void JointGauge::watch(std::span<const record::BlockStatus> status) {
   for (Piece& piece : pieces_.all()) {
     if (!in_place(piece, status)) continue;
     const Offset now = offset(piece);
@@ -52,7 +52,7 @@ void JointGauge::watch(std::span<const BlockStatus> status) {
   }
 }
 
-int JointGauge::hinges(std::span<const BlockStatus> status) const {
+int JointGauge::hinges(std::span<const record::BlockStatus> status) const {
   struct Ends {
     bool open = false, closed = false;
   };
@@ -69,7 +69,7 @@ int JointGauge::hinges(std::span<const BlockStatus> status) const {
   }));
 }
 
-void JointGauge::measure(std::span<const BlockStatus> status, Damage& damage) const {
+void JointGauge::measure(std::span<const record::BlockStatus> status, record::Damage& damage) const {
   damage.hinges = hinges(status);
   double length = 0.0, slip_length = 0.0;
   for (const Piece& piece : pieces_.all()) {

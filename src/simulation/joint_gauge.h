@@ -29,9 +29,9 @@ class JointGauge {
   /// Takes the contacts in place as the pieces.
   void start(std::span<const contact::Contact> contacts);
   /// Looks at all pieces. `status`: of every block now.
-  void watch(std::span<const BlockStatus> status);
+  void watch(std::span<const record::BlockStatus> status);
   /// Adds slip, opening and hinges to `damage`: in place now, and ever up to the last look.
-  void measure(std::span<const BlockStatus> status, Damage& damage) const;
+  void measure(std::span<const record::BlockStatus> status, record::Damage& damage) const;
   /// m. Slip of the piece at each contact, by its vertex and edge; 0 for contacts made later.
   void slips(std::span<const contact::Contact> contacts, std::span<double> slips) const;
 
@@ -44,9 +44,9 @@ class JointGauge {
     double slip, opening;
   };
   /// Pairs of blocks with a piece of joint in place that is open beyond the limit, and one that is not.
-  [[nodiscard]] int hinges(std::span<const BlockStatus> status) const;
+  [[nodiscard]] int hinges(std::span<const record::BlockStatus> status) const;
   [[nodiscard]] Offset offset(const Piece& piece) const;
-  [[nodiscard]] bool in_place(const Piece& piece, std::span<const BlockStatus> status) const;
+  [[nodiscard]] bool in_place(const Piece& piece, std::span<const record::BlockStatus> status) const;
 
   const RunSetup& setup_;
   const dynamics::Model& model_;

@@ -15,7 +15,7 @@ double coefficient_of(double friction_angle) {
   return std::tan(friction_angle * std::numbers::pi / 180.0);
 }
 
-contact::JointLaw law_of(const JointProperties& joint) {
+contact::JointLaw law_of(const contact::JointProperties& joint) {
   contact::JointLaw law{.friction_coefficient = coefficient_of(joint.friction),
                         .cohesion = joint.cohesion,
                         .tension = joint.tension,
@@ -83,7 +83,7 @@ std::vector<contact::JointLaw> given_laws(const RunSetup& setup, const ControlMe
 }
 
 std::vector<contact::JointLaw> laws_in_stage(const RunSetup& setup, const ControlMemory& memory,
-                                             const Stage& stage) {
+                                             const record::Stage& stage) {
   std::vector<contact::JointLaw> laws = given_laws(setup, memory);
   const auto reduce = [&](std::size_t law) { laws[law] = laws[law].divided_by(stage.strength_factor); };
   for (const std::string& name : stage.strength_of) reduce(find_law(setup, name).value());

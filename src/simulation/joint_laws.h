@@ -27,7 +27,7 @@ std::vector<contact::JointLaw> joint_laws(const RunSetup& setup);
 std::vector<contact::JointLaw> given_laws(const RunSetup& setup, const ControlMemory& memory);
 /// As they act in a stage: divided by its factor.
 std::vector<contact::JointLaw> laws_in_stage(const RunSetup& setup, const ControlMemory& memory,
-                                             const Stage& stage);
+                                             const record::Stage& stage);
 
 /// Gives a law another strength at the peak; what is left at the end is no more.
 void put_strength(const Strength& strength, contact::JointLaw& law);

@@ -16,10 +16,11 @@ Vec2 nearest_on_edge(Vec2 a, Vec2 b, Vec2 p) {
 
 }  // namespace
 
-WallPart part_towards(Vec2 out, Vec2 down) {
+record::WallPart part_towards(Vec2 out, Vec2 down) {
   const double below = dot(out, down), right = cross(down, out);
-  if (std::abs(below) >= std::abs(right)) return below > 0.0 ? WallPart::invert : WallPart::crown;
-  return right > 0.0 ? WallPart::right : WallPart::left;
+  if (std::abs(below) >= std::abs(right))
+    return below > 0.0 ? record::WallPart::invert : record::WallPart::crown;
+  return right > 0.0 ? record::WallPart::right : record::WallPart::left;
 }
 
 void Openings::unite(std::span<const Excavation> excavations, std::span<const std::uint8_t> open) {
@@ -62,7 +63,8 @@ Openings::Place Openings::behind_walls(const Polygon& block, Vec2 down) const {
         }
       }
     }
-    if (!std::isfinite(nearest) || (deepest.part != WallPart::none && nearest <= deepest.depth)) continue;
+    if (!std::isfinite(nearest) || (deepest.part != record::WallPart::none && nearest <= deepest.depth))
+      continue;
     deepest = {nearest, part_towards(out, down)};
   }
   return deepest;

@@ -10,7 +10,7 @@
 namespace keyblock::simulation {
 
 /// By a direction out of an opening: up and down within 45°, sides else. `down`: unit vector.
-WallPart part_towards(Vec2 out, Vec2 down);
+record::WallPart part_towards(Vec2 out, Vec2 down);
 
 /// What the outlines of the excavations that are open cover together. Coordinates are those of the reference position.
 class Openings {
@@ -24,8 +24,8 @@ class Openings {
 
   /// The corner of a block that is farthest from the outlines.
   struct Place {
-    double depth = 0.0;              ///< m, from the nearest point of an outline
-    WallPart part = WallPart::none;  ///< by the direction from there to the corner
+    double depth = 0.0;                              ///< m, from the nearest point of an outline
+    record::WallPart part = record::WallPart::none;  ///< by the direction from there to the corner
   };
   /// `down`: unit vector. `part` is `none` without openings.
   [[nodiscard]] Place behind_walls(const Polygon& block, Vec2 down) const;

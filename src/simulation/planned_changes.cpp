@@ -35,14 +35,14 @@ std::optional<PlannedChange> last_planned_change(const RunSetup& setup) {
   return last;
 }
 
-std::optional<StageWait> wait_of(const RunSetup& setup, const StageRecord& record) {
-  const Stage& stage = record.stage;
+std::optional<record::StageWait> wait_of(const RunSetup& setup, const record::StageRecord& record) {
+  const record::Stage& stage = record.stage;
   if (!stage.until_still) return std::nullopt;
   const double duration = record.planned_duration.value_or(0.0);
-  std::optional<StageWait> wait;
+  std::optional<record::StageWait> wait;
   if (const auto change = last_planned_change(setup); change && change->time > record.start_time)
     wait = {std::min(change->time - record.start_time, duration), change->what};
-  if (stage.kind != StageKind::shake || stage.scale == 0.0) return wait;
+  if (stage.kind != record::StageKind::shake || stage.scale == 0.0) return wait;
   const double shaking = end_of_shaking(setup.motions.at(static_cast<std::size_t>(stage.motion)), duration,
                                         stage.still_acceleration / std::abs(stage.scale));
   if (shaking > 0.0 && (!wait || shaking > wait->until)) wait = {shaking, "the shaking"};

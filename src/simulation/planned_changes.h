@@ -17,6 +17,7 @@ struct PlannedChange {
 
 /// What a stage that ends when all is still waits for: the last planned change, or the end of its shaking if that is later. Its start and
 /// planned duration are known. What comes only after its longest duration is waited for as well: stages after it count on its time.
-[[nodiscard]] std::optional<StageWait> wait_of(const RunSetup& setup, const StageRecord& record);
+[[nodiscard]] std::optional<record::StageWait> wait_of(const RunSetup& setup,
+                                                       const record::StageRecord& record);
 
 }  // namespace keyblock::simulation

@@ -20,9 +20,9 @@ void ProgressMeter::after_step(const RunState& now, int iterations, const StageO
   const double since_last = std::chrono::duration<double>(time - last_report_).count();
   if (since_last < interval_ && outlook.steps_left > 0) return;
   last_report_ = time;
-  const Stage& stage = setup_.stages[static_cast<std::size_t>(now.stage)];
-  const bool is_static = stage.kind == StageKind::settle;
-  Progress progress;
+  const record::Stage& stage = setup_.stages[static_cast<std::size_t>(now.stage)];
+  const bool is_static = stage.kind == record::StageKind::settle;
+  record::Progress progress;
   progress.stage = now.stage;
   progress.stage_count = static_cast<int>(setup_.stages.size());
   progress.stage_name = stage.name;

@@ -12,7 +12,7 @@ namespace keyblock::simulation {
 class ProgressMeter {
  public:
   /// interval: s of wall time.
-  ProgressMeter(const RunSetup& setup, double interval, RunObserver& observer)
+  ProgressMeter(const RunSetup& setup, double interval, record::RunObserver& observer)
       : setup_(setup), interval_(interval), observer_(observer) {}
 
   /// A stage begins, or goes on after `first_step` steps that an earlier run has taken.
@@ -27,7 +27,7 @@ class ProgressMeter {
 
   const RunSetup& setup_;
   double interval_;
-  RunObserver& observer_;
+  record::RunObserver& observer_;
   Clock::time_point begin_, last_report_;
   long first_step_ = 0, iterations_ = 0;  ///< of the stage
 };

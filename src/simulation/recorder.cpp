@@ -21,20 +21,20 @@
 namespace keyblock::simulation {
 
 // The state of a contact is recorded as the contact code has it.
-static_assert(static_cast<int>(ContactState::open) == static_cast<int>(contact::State::open));
-static_assert(static_cast<int>(ContactState::sliding) == static_cast<int>(contact::State::sliding));
-static_assert(static_cast<int>(ContactState::locked) == static_cast<int>(contact::State::locked));
+static_assert(static_cast<int>(record::ContactState::open) == static_cast<int>(contact::State::open));
+static_assert(static_cast<int>(record::ContactState::sliding) == static_cast<int>(contact::State::sliding));
+static_assert(static_cast<int>(record::ContactState::locked) == static_cast<int>(contact::State::locked));
 
 namespace {
 
-std::vector<ColumnRecord> columns_of(const dynamics::Model& model) {
-  std::vector<ColumnRecord> columns;
+std::vector<record::ColumnRecord> columns_of(const dynamics::Model& model) {
+  std::vector<record::ColumnRecord> columns;
   for (const auto& coupling : model.couplings) {
     const dynamics::FarField* field = coupling->far_field();
     if (field == nullptr) continue;
     for (const dynamics::FarRock& far : field->far_rock()) {
       const std::span<const double> heights = far.column.heights();
-      ColumnRecord column{far.x, heights.front(), heights.back()};
+      record::ColumnRecord column{far.x, heights.front(), heights.back()};
       for (std::size_t k = 1; k < heights.size(); ++k)
         column.longest_element = std::max(column.longest_element, heights[k] - heights[k - 1]);
       columns.push_back(column);
@@ -43,14 +43,14 @@ std::vector<ColumnRecord> columns_of(const dynamics::Model& model) {
   return columns;
 }
 
-std::vector<LayerRecord> records_of(std::span<const dynamics::RockLayer> layers) {
-  std::vector<LayerRecord> records;
+std::vector<record::LayerRecord> records_of(std::span<const dynamics::RockLayer> layers) {
+  std::vector<record::LayerRecord> records;
   for (const dynamics::RockLayer& layer : layers)
     records.push_back({layer.top, layer.density, layer.speeds()});
   return records;
 }
 
-BoundaryRecord record_of(const Boundary& boundary) {
+record::BoundaryRecord record_of(const Boundary& boundary) {
   return {.compliant = boundary.compliant,
           .sides = boundary.sides,
           .overburden = boundary.overburden,
@@ -60,10 +60,10 @@ BoundaryRecord record_of(const Boundary& boundary) {
           .source = boundary.source};
 }
 
-void put_forces(std::span<const dynamics::ContactForce> forces, std::span<ContactRecord> to) {
+void put_forces(std::span<const dynamics::ContactForce> forces, std::span<record::ContactRecord> to) {
   for (std::size_t k = 0; k < forces.size(); ++k) {
     const dynamics::ContactForce& force = forces[k];
-    to[k].state = static_cast<ContactState>(force.state);
+    to[k].state = static_cast<record::ContactState>(force.state);
     to[k].gap = force.gap;
     to[k].normal_force = force.normal;
     to[k].shear_force = force.shear;
@@ -76,7 +76,7 @@ double strength_left(const contact::JointLaw& law, const contact::Memory& memory
 }
 
 void put_strengths(const dynamics::Model& model, std::span<const contact::Contact> contacts,
-                   std::span<ContactRecord> to) {
+                   std::span<record::ContactRecord> to) {
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const contact::Contact& c = contacts[k];
     to[k].friction = c.friction_coefficient;
@@ -136,8 +136,8 @@ void Recorder::orders_changed() {
   }
 }
 
-ModelRecord Recorder::model() const {
-  ModelRecord record;
+record::ModelRecord Recorder::model() const {
+  record::ModelRecord record;
   record.title = setup_.title;
   record.version = setup_.version;
   record.seed = setup_.seed;
@@ -151,7 +151,7 @@ ModelRecord Recorder::model() const {
   record.closure_is_lower_bound = setup_.closure_is_lower_bound;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     const dynamics::Block& block = model_.blocks[b];
-    ModelRecord::Block row;
+    record::ModelRecord::Block row;
     const bool is_frame = b >= setup_.properties.size();
     row.name = is_frame ? "frame" : setup_.properties[b].name;
     row.order = block.basis.order();
@@ -160,7 +160,7 @@ ModelRecord Recorder::model() const {
     row.density = block.material.density;
     row.young = block.material.young;
     row.poisson = block.material.poisson;
-    if (!block.fixed && block.material.state == PlaneState::plane_strain)
+    if (!block.fixed && block.material.state == block::PlaneState::plane_strain)
       row.stress_ratio_zz = block.material.poisson;
     if (!is_frame) row.excavations = setup_.system.blocks[b].excavations;
     row.centroid = block.centroid;
@@ -173,7 +173,7 @@ ModelRecord Recorder::model() const {
   }
   record.vertices = model_.reference;
   record.edge_label = labels_;
-  for (const Stage& stage : setup_.stages) record.stage_names.push_back(stage.name);
+  for (const record::Stage& stage : setup_.stages) record.stage_names.push_back(stage.name);
   record.joint_set_names = setup_.joint_set_names;
   record.trace_map_names = setup_.trace_map_names;
   for (const Excavation& excavation : setup_.excavations) {
@@ -194,8 +194,8 @@ ModelRecord Recorder::model() const {
   return record;
 }
 
-Frame Recorder::frame(const dynamics::State& state, int stage) const {
-  Frame frame;
+record::Frame Recorder::frame(const dynamics::State& state, int stage) const {
+  record::Frame frame;
   frame.time = state.time;
   frame.stage = stage;
   frame.step = state.step;
@@ -219,25 +219,25 @@ Frame Recorder::frame(const dynamics::State& state, int stage) const {
   return frame;
 }
 
-ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::Stepper& stepper,
-                                int stage) const {
-  ContactFrame frame;
+record::ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::Stepper& stepper,
+                                        int stage) const {
+  record::ContactFrame frame;
   frame.time = state.time;
   frame.stage = stage;
   frame.step = state.step;
   frame.contacts.reserve(stepper.force_count());
-  each_contact(stepper, [&](std::span<const ContactRecord> some) {
+  each_contact(stepper, [&](std::span<const record::ContactRecord> some) {
     frame.contacts.insert(frame.contacts.end(), some.begin(), some.end());
   });
   put_water(state, frame.contacts);
   return frame;
 }
 
-void Recorder::each_contact(const dynamics::Stepper& stepper, const TakeContacts& take,
-                            ContactParts parts) const {
+void Recorder::each_contact(const dynamics::Stepper& stepper, const record::TakeContacts& take,
+                            record::ContactParts parts) const {
   constexpr std::size_t at_a_time = 64;
   std::array<dynamics::ContactForce, at_a_time> forces;
-  std::array<ContactRecord, at_a_time> records;
+  std::array<record::ContactRecord, at_a_time> records;
   std::array<double, at_a_time> slips;
   const auto contacts = stepper.contacts();
   for (std::size_t first = 0; first < stepper.force_count(); first += at_a_time) {
@@ -257,10 +257,11 @@ void Recorder::each_contact(const dynamics::Stepper& stepper, const TakeContacts
   }
 }
 
-void Recorder::put_places(std::span<const contact::Contact> contacts, std::span<ContactRecord> to) const {
+void Recorder::put_places(std::span<const contact::Contact> contacts,
+                          std::span<record::ContactRecord> to) const {
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const contact::Contact& c = contacts[k];
-    ContactRecord& row = to[k];
+    record::ContactRecord& row = to[k];
     row.block_a = c.block_a;
     row.block_b = c.block_b;
     row.vertex = c.vertex;
@@ -272,11 +273,11 @@ void Recorder::put_places(std::span<const contact::Contact> contacts, std::span<
   }
 }
 
-void Recorder::put_water(const dynamics::State& state, std::span<ContactRecord> to) const {
+void Recorder::put_water(const dynamics::State& state, std::span<record::ContactRecord> to) const {
   const dynamics::WaterOfModel water = dynamics::water_of(model_, state);
   if (water.water == nullptr) return;
   std::vector<dynamics::EdgePlace> places;
-  for (const ContactRecord& c : to) places.push_back({c.edge, model_.reference[at(c.vertex)]});
+  for (const record::ContactRecord& c : to) places.push_back({c.edge, model_.reference[at(c.vertex)]});
   const std::vector<double> pressures = water.water->pressures(model_, state, water.memory, places);
   for (std::size_t k = 0; k < to.size(); ++k) to[k].water_pressure = pressures[k];
 }
@@ -313,10 +314,10 @@ std::vector<Vec2> Recorder::velocities(const dynamics::State& state,
   return velocities;
 }
 
-HistoryRow Recorder::history(const dynamics::State& state, const dynamics::GroundMove& frame,
-                             std::span<const Vec2> before) const {
+record::HistoryRow Recorder::history(const dynamics::State& state, const dynamics::GroundMove& frame,
+                                     std::span<const Vec2> before) const {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  HistoryRow row;
+  record::HistoryRow row;
   row.time = state.time;
   row.step = state.step;
   for (std::size_t k = 0; k < points_.size(); ++k) {
@@ -338,19 +339,19 @@ HistoryRow Recorder::history(const dynamics::State& state, const dynamics::Groun
   return row;
 }
 
-void Recorder::put_element_histories(const dynamics::State& state, HistoryRow& row) const {
+void Recorder::put_element_histories(const dynamics::State& state, record::HistoryRow& row) const {
   if (element_histories_.empty()) return;
-  const std::vector<ElementState> all = element_states(model_, state);
-  for (const ElementHistory& history : element_histories_) {
-    ElementState& element = row.elements.emplace_back(all[at(history.element)]);
+  const std::vector<record::ElementState> all = element_states(model_, state);
+  for (const record::ElementHistory& history : element_histories_) {
+    record::ElementState& element = row.elements.emplace_back(all[at(history.element)]);
     if (element.present) continue;
-    for (const ElementStateField& field : element_state_fields)
+    for (const record::ElementStateField& field : record::element_state_fields)
       element.*field.number = std::numeric_limits<double>::quiet_NaN();
   }
 }
 
-std::optional<OverlapRecord> Recorder::overlap(const dynamics::State& state, int stage,
-                                               double least_depth) const {
+std::optional<record::OverlapRecord> Recorder::overlap(const dynamics::State& state, int stage,
+                                                       double least_depth) const {
   std::vector<Polygon> polygons;
   std::vector<int> blocks;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
@@ -360,8 +361,9 @@ std::optional<OverlapRecord> Recorder::overlap(const dynamics::State& state, int
   }
   const overlap::Overlap found = overlap::largest_overlap(polygons, least_depth);
   if (found.block_a < 0) return std::nullopt;
-  return OverlapRecord{found.depth, blocks[at(found.block_a)],    blocks[at(found.block_b)], found.where,
-                       state.time,  setup_.stages[at(stage)].name};
+  return record::OverlapRecord{
+      found.depth, blocks[at(found.block_a)],    blocks[at(found.block_b)], found.where,
+      state.time,  setup_.stages[at(stage)].name};
 }
 
 double Recorder::area_change(const dynamics::State& state) const {

@@ -24,7 +24,7 @@ bool Reporter::is_due(long stage_step, double interval) const {
 }
 
 bool Reporter::is_static(const RunState& now) const {
-  return setup_.stages[static_cast<std::size_t>(now.stage)].kind == StageKind::settle;
+  return setup_.stages[static_cast<std::size_t>(now.stage)].kind == record::StageKind::settle;
 }
 
 void Reporter::frame(RunState& now) {
@@ -79,7 +79,7 @@ void Reporter::due_history(RunState& now) {
 void Reporter::due_step_row(RunState& now, const dynamics::StepReport& report) {
   if (!is_due(now.stage_step, step_row_interval)) return;
   gauge_.watch(now.mechanics);
-  const Energy energy = energy_audit(model_, now.mechanics, now.initial_energy);
+  const record::Energy energy = energy_audit(model_, now.mechanics, now.initial_energy);
   observer_.step({now.mechanics.time, now.mechanics.step, now.stage, report.iterations, report.shortest,
                   report.penetration, report.max_displacement, report.closed_contacts, energy});
   ++now.reported.steps;

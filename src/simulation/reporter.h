@@ -24,8 +24,8 @@ namespace keyblock::simulation {
 class Reporter {
  public:
   /// Throws InputError when a history point lies in no block.
-  Reporter(const RunSetup& setup, const dynamics::Model& model, DamageGauge& gauge, RunObserver& observer,
-           Profile& profile, int threads)
+  Reporter(const RunSetup& setup, const dynamics::Model& model, DamageGauge& gauge,
+           record::RunObserver& observer, Profile& profile, int threads)
       : setup_(setup),
         model_(model),
         gauge_(gauge),
@@ -59,7 +59,7 @@ class Reporter {
   const RunSetup& setup_;
   const dynamics::Model& model_;
   DamageGauge& gauge_;
-  RunObserver& observer_;
+  record::RunObserver& observer_;
   Profile& profile_;
   Recorder recorder_;
   std::vector<Vec2> velocity_before_;  ///< m/s, of history points, where a history is due after the step

@@ -130,7 +130,7 @@ std::vector<JointPiece> joint_pieces(const RunSetup& setup) {
   return pieces;
 }
 
-const JointProperties& joint_of(const JointTable& joints, cutting::EdgeLabel label) {
+const contact::JointProperties& joint_of(const JointTable& joints, cutting::EdgeLabel label) {
   const auto index = static_cast<std::size_t>(label.index);
   if (label.kind == cutting::EdgeKind::joint_set) return joints.joint_sets[index];
   return label.kind == cutting::EdgeKind::trace_map ? joints.trace_maps[index] : joints.standard;
@@ -148,7 +148,7 @@ RockSample::RockSample(const RunSetup& setup, std::span<const JointPiece> pieces
     const BlockProperties &a = setup.properties[piece.a], &b = setup.properties[piece.b];
     const double length = length_inside(piece.from, piece.to, part, tolerance);
     if (length <= 0.0 || a.fixed || b.fixed) continue;
-    const JointProperties& joint = joint_of(setup.joints, piece.label);
+    const contact::JointProperties& joint = joint_of(setup.joints, piece.label);
     const double normal =
         joint.normal_stiffness.value_or(setup.solver.penalty * std::min(a.material.young, b.material.young));
     add_joint((piece.to - piece.from) / norm(piece.to - piece.from), length, normal,
@@ -156,8 +156,8 @@ RockSample::RockSample(const RunSetup& setup, std::span<const JointPiece> pieces
   }
 }
 
-void RockSample::add_block(const Material& rock, double area) {
-  const bool strain = rock.state == PlaneState::plane_strain;
+void RockSample::add_block(const block::Material& rock, double area) {
+  const bool strain = rock.state == block::PlaneState::plane_strain;
   const double nu = rock.poisson, young = strain ? rock.young / (1.0 - nu * nu) : rock.young,
                in_section = strain ? nu / (1.0 - nu) : nu;
   ++blocks_;

@@ -22,7 +22,7 @@ struct JointPiece {
 std::vector<JointPiece> joint_pieces(const RunSetup& setup);
 
 /// Of the joint that an edge is a piece of.
-const JointProperties& joint_of(const JointTable& joints, cutting::EdgeLabel label);
+const contact::JointProperties& joint_of(const JointTable& joints, cutting::EdgeLabel label);
 
 /// m, √ of the mean area of the blocks.
 double mean_block_size(const RunSetup& setup);
@@ -53,7 +53,7 @@ class RockSample {
  private:
   /// Symmetric, in the order xx, yy, xy; less what it is a mean over.
   using Matrix = std::array<std::array<double, 3>, 3>;
-  void add_block(const Material& rock, double area);
+  void add_block(const block::Material& rock, double area);
   void add_joint(Vec2 along, double length, double normal, double shear);
 
   double whole_ = 0.0, filled_ = 0.0, area_ = 0.0;  ///< m²

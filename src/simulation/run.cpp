@@ -6,7 +6,7 @@
 
 namespace keyblock::simulation {
 
-RunRecord run(const RunSetup& setup, const RunOptions& options, RunObserver& observer) {
+record::RunRecord run(const RunSetup& setup, const RunOptions& options, record::RunObserver& observer) {
   return with_memory_for([&] { return memory_purpose(setup); },
                          [&] {
                            Runner runner(setup, options, observer);

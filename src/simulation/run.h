@@ -7,6 +7,6 @@ namespace keyblock::simulation {
 
 /// Runs all stages of `setup`. Throws InputError for a model that cannot be built, RunError when a step cannot be
 /// solved; the observer has then received everything up to that step, and end(). Step by step: runner.h.
-RunRecord run(const RunSetup& setup, const RunOptions& options, RunObserver& observer);
+record::RunRecord run(const RunSetup& setup, const RunOptions& options, record::RunObserver& observer);
 
 }  // namespace keyblock::simulation

@@ -26,7 +26,7 @@ const std::string& stage_name(const RunSetup& setup, const RunState& now) {
 
 }  // namespace
 
-void check_energies(const RunSetup& setup, const RunState& now, const Energy& energy) {
+void check_energies(const RunSetup& setup, const RunState& now, const record::Energy& energy) {
   if (std::isfinite(energy.residual_ratio)) return;
   give_up(setup, fmt::format("the energies after step {} of stage '{}' are no finite numbers", now.stage_step,
                              stage_name(setup, now)));
@@ -45,7 +45,7 @@ void check_converging(const RunSetup& setup, const RunState& now) {
                              most_unconverged, now.stage_step, stage_name(setup, now)));
 }
 
-void check_solved(const RunSetup& setup, const RunState& now, const StageRecord& stage) {
+void check_solved(const RunSetup& setup, const RunState& now, const record::StageRecord& stage) {
   const long before = now.mechanics.step - stage.steps;
   if (stage.steps == 0 || now.record.open_close.last_converged_step > before) return;
   give_up(setup, fmt::format("no step of stage '{}' converged, of {} from step {} of the run on",

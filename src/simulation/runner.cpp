@@ -43,14 +43,14 @@ const RunSetup& feasible(const RunSetup& setup) {
 void count(RunState& now, const dynamics::StepReport& report) {
   ++now.stage_step;
   now.iterations += report.iterations;
-  OpenCloseStatistics& statistics = now.record.open_close;
+  record::OpenCloseStatistics& statistics = now.record.open_close;
   statistics.max_iterations = std::max(statistics.max_iterations, report.iterations);
   statistics.retried_steps += report.substeps > 1;
   statistics.unconverged_steps += !report.converged;
   if (report.converged) statistics.last_converged_step = now.mechanics.step;
 }
 
-void keep_larger(OverlapRecord& known, const dynamics::VertexPlace& found, const RunState& now,
+void keep_larger(record::OverlapRecord& known, const dynamics::VertexPlace& found, const RunState& now,
                  const RunSetup& setup) {
   if (found.distance > known.depth)
     known = {found.distance, found.block_a,      found.block_b,
@@ -58,7 +58,7 @@ void keep_larger(OverlapRecord& known, const dynamics::VertexPlace& found, const
 }
 
 void keep_audit(const dynamics::ContactAudit& audit, const RunSetup& setup, RunState& now) {
-  ContactChecks& vertices = now.record.contact_checks;
+  record::ContactChecks& vertices = now.record.contact_checks;
   vertices.across_gaps += audit.across_gaps;
   keep_larger(vertices.farthest, audit.farthest, now, setup);
   keep_larger(vertices.deepest, audit.deepest, now, setup);
@@ -66,7 +66,7 @@ void keep_audit(const dynamics::ContactAudit& audit, const RunSetup& setup, RunS
 }
 
 /// m/s², of the ground: forces of inertia are against it.
-Vec2 seismic_acceleration(const Stage& stage, const dynamics::Model& model) {
+Vec2 seismic_acceleration(const record::Stage& stage, const dynamics::Model& model) {
   return -norm(model.gravity) * Vec2{stage.k_h, stage.k_v};
 }
 
@@ -76,7 +76,7 @@ bool is_set(const std::atomic<bool>* flag) {
 
 }  // namespace
 
-Runner::Runner(const RunSetup& setup, RunOptions options, RunObserver& observer)
+Runner::Runner(const RunSetup& setup, RunOptions options, record::RunObserver& observer)
     : setup_(feasible(setup)),
       options_(std::move(options)),
       observer_(observer),
@@ -121,7 +121,7 @@ void Runner::resume() {
   wall_before_ = now_.wall_time;
 }
 
-const Stage& Runner::planned_stage() const {
+const record::Stage& Runner::planned_stage() const {
   return setup_.stages[std::min(at(now_.stage), setup_.stages.size() - 1)];
 }
 
@@ -144,7 +144,7 @@ Advance Runner::advance() {
   return result;
 }
 
-RunRecord Runner::finish() {
+record::RunRecord Runner::finish() {
   if (ended_) return now_.record;
   if (stage_) {
     stage_->record.interrupted = true;
@@ -171,7 +171,7 @@ void Runner::end_if_it_fails(const Work& work) {
 void Runner::end() {
   ended_ = true;
   stage_.reset();
-  RunRecord& record = now_.record;
+  record::RunRecord& record = now_.record;
   record.steps = now_.mechanics.step;
   record.wall_time = wall_before_ + seconds_since(begin_);
   record.dof = static_cast<int>(model_.unknowns);
@@ -187,7 +187,7 @@ void Runner::end() {
   observer_.end(record);
 }
 
-Energy Runner::energy() const {
+record::Energy Runner::energy() const {
   return energy_audit(model_, now_.mechanics, now_.initial_energy);
 }
 
@@ -214,7 +214,7 @@ void Runner::begin_stage() {
   // Not to be found again from the time and the number of steps: the motion is read at times that count from here.
   if (is_new) now_.stage_start = now_.mechanics.time;
   progress_.begin_stage(now_.stage_step);
-  StageRecord& record = stage_.emplace().record;
+  record::StageRecord& record = stage_.emplace().record;
   record.stage = setup_.stages[static_cast<std::size_t>(now_.stage)];
   record.start_time = now_.stage_start;
   record.steps = now_.stage_step;
@@ -227,22 +227,22 @@ void Runner::begin_stage() {
     opening_.begin_stage(now_.stage, now_.mechanics);
     gauge_.begin_stage(now_.mechanics);
   }
-  model_.joints_wear = wears_joints(setup_.stages, at(now_.stage));
+  model_.joints_wear = record::wears_joints(setup_.stages, at(now_.stage));
   if (auto laws = laws_in_stage(setup_, now_.control, record.stage); laws != model_.laws)
     stepper_->set_laws(std::move(laws));
   model_.water = water_in(setup_, at(now_.stage));
-  model_.water_drains = record.stage.kind != StageKind::settle;  // static steps take no time
+  model_.water_drains = record.stage.kind != record::StageKind::settle;  // static steps take no time
   now_.present = model_.surface.present;
   observer_.stage_begin(now_.stage, record);
   if (is_new) reporter_.frame(now_);
-  if (record.stage.kind == StageKind::settle) {
+  if (record.stage.kind == record::StageKind::settle) {
     begin_settling();
     return;
   }
   if (is_new) now_.record.made.highest = now_.mechanics.ledger.numerical;
   if (record.stage.until_still) begin_waiting(is_new);
   stage_->most_steps = static_cast<long>(step_count(record.planned_duration.value_or(0.0), setup_.time_step));
-  if (record.stage.kind == StageKind::shake) {
+  if (record.stage.kind == record::StageKind::shake) {
     stage_->motion.emplace(setup_.motions.at(static_cast<std::size_t>(record.stage.motion)),
                            record.stage.scale, record.start_time, now_.control.motion_scale);
   }
@@ -250,16 +250,16 @@ void Runner::begin_stage() {
 
 /// For the time when nothing moves any more.
 void Runner::begin_waiting(bool is_new) {
-  const Stage& stage = stage_->record.stage;
-  const std::optional<StageWait>& wait = stage_->record.waits_for;
+  const record::Stage& stage = stage_->record.stage;
+  const std::optional<record::StageWait>& wait = stage_->record.waits_for;
   stage_->stillness.emplace(stage.still_distance.value_or(still_share * setup_.damage.slip), stage.still_time,
                             wait ? wait->until : 0.0);
   if (!is_new) stage_->stillness->restore(now_.still);
 }
 
 void Runner::begin_settling() {
-  const Stage& stage = stage_->record.stage;
-  stage_->most_steps = stage.max_steps.value_or(default_settle_steps);
+  const record::Stage& stage = stage_->record.stage;
+  stage_->most_steps = stage.max_steps.value_or(record::default_settle_steps);
   stage_->settler.emplace(model_, setup_.time_step, stage.tolerance);
   model_.static_ground = seismic_acceleration(stage, model_);
   if (now_.stage_step > 0) {
@@ -332,7 +332,7 @@ void Runner::after_step(const dynamics::StepReport& report, const StageOutlook& 
 }
 
 void Runner::end_stage() {
-  StageRecord& record = stage_->record;
+  record::StageRecord& record = stage_->record;
   if (stage_->settler) {
     const Settler& settler = *stage_->settler;
     record.equilibrium_reached = stage_->is_in_equilibrium;
@@ -365,7 +365,7 @@ void Runner::end_stage() {
   // An interrupted stage is in the record of this run alone; the checkpoint, written before, has it as unfinished.
   now_.record.stages.push_back(std::move(record));
   stage_.reset();
-  const StageRecord& ended = now_.record.stages.back();
+  const record::StageRecord& ended = now_.record.stages.back();
   if (ended.interrupted) {
     now_.record.interrupted = true;
     return;

@@ -39,7 +39,7 @@ class Runner {
  public:
   /// Builds the model, or reads the checkpoint, and tells the observer so (begin, resume). Throws InputError for a model that cannot be
   /// built and for a checkpoint of another run; RunError where rock or joints yield without limit.
-  Runner(const RunSetup& setup, RunOptions options, RunObserver& observer);
+  Runner(const RunSetup& setup, RunOptions options, record::RunObserver& observer);
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
   ~Runner() = default;
@@ -52,7 +52,7 @@ class Runner {
   [[nodiscard]] bool done() const;
   /// Ends the run where it is: a stage that has begun is recorded as interrupted, and the observer receives end(). Calls after the first
   /// give the same record. A later run with RunOptions::resume goes on from the last checkpoint.
-  RunRecord finish();
+  record::RunRecord finish();
 
   [[nodiscard]] const dynamics::State& state() const { return now_.mechanics; }
   [[nodiscard]] const dynamics::Model& model() const { return model_; }
@@ -60,13 +60,13 @@ class Runner {
   /// orders of blocks.
   [[nodiscard]] std::size_t contact_count() const { return stepper_->force_count(); }
   /// The contacts of the last step, some at a time.
-  void each_contact(const TakeContacts& take, ContactParts parts = {}) const {
+  void each_contact(const record::TakeContacts& take, record::ContactParts parts = {}) const {
     reporter_.recorder().each_contact(*stepper_, take, parts);
   }
-  [[nodiscard]] Energy energy() const;
+  [[nodiscard]] record::Energy energy() const;
   /// Measures of damage so far, without a look of the run's own; none before the first excavation.
-  [[nodiscard]] std::optional<Damage> damage() const;
-  [[nodiscard]] std::vector<BlockStatus> status() const;
+  [[nodiscard]] std::optional<record::Damage> damage() const;
+  [[nodiscard]] std::vector<record::BlockStatus> status() const;
   /// m/s², of the ground at the time of the state; zero outside of shaking stages.
   [[nodiscard]] Vec2 ground_acceleration() const;
   /// Changes the running model: between two steps, or in RunOptions::after_step.
@@ -78,7 +78,7 @@ class Runner {
 
  private:
   /// The stage at hand, or the one that comes next; the last one when the run is done.
-  [[nodiscard]] const Stage& planned_stage() const;
+  [[nodiscard]] const record::Stage& planned_stage() const;
   void begin();
   void resume();
   void orders_changed();
@@ -101,7 +101,7 @@ class Runner {
 
   const RunSetup& setup_;
   RunOptions options_;
-  RunObserver& observer_;
+  record::RunObserver& observer_;
   ThreadTeam team_;
   Profile profile_;
   dynamics::Model model_;

@@ -5,15 +5,15 @@
 
 namespace keyblock::simulation {
 
-std::optional<Damage> Runner::damage() const {
+std::optional<record::Damage> Runner::damage() const {
   if (!gauge_.started()) return {};
   DamageGauge looking = gauge_;  // a look is remembered
-  Damage damage = looking.measure(now_.mechanics);
+  record::Damage damage = looking.measure(now_.mechanics);
   measure_elements(model_, now_.peaks, damage);
   return damage;
 }
 
-std::vector<BlockStatus> Runner::status() const {
+std::vector<record::BlockStatus> Runner::status() const {
   return gauge_.status(now_.mechanics);
 }
 

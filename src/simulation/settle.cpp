@@ -190,20 +190,22 @@ std::vector<bool> Settler::which_move() const {
   return moving;
 }
 
-std::vector<MovingBlock> Settler::moving(const dynamics::Stepper& stepper) const {
+std::vector<record::MovingBlock> Settler::moving(const dynamics::Stepper& stepper) const {
   std::vector<int> group(model_.blocks.size());  // of a block: the least of its blocks
   std::iota(group.begin(), group.end(), 0);
   const auto leader = [&](int b) {
     while (group[at(b)] != b) b = group[at(b)];
     return b;
   };
-  const auto joins = [&](int b) { return moving_.moves(at(b)) && !is_falling(moving_.carried(at(b))); };
+  const auto joins = [&](int b) {
+    return moving_.moves(at(b)) && !record::is_falling(moving_.carried(at(b)));
+  };
   for (const contact::Contact& contact : stepper.contacts()) {
     if (!joins(contact.block_a) || !joins(contact.block_b)) continue;
     const int one = leader(contact.block_a), other = leader(contact.block_b);
     group[at(std::max(one, other))] = std::min(one, other);
   }
-  std::vector<MovingBlock> blocks;
+  std::vector<record::MovingBlock> blocks;
   for (int b = 0; b < static_cast<int>(model_.blocks.size()); ++b) {
     if (model_.moves(at(b)) && moving_.moves(at(b))) blocks.push_back({b, moving_.carried(at(b)), leader(b)});
   }

@@ -30,7 +30,7 @@ class Settler {
   /// Per block.
   [[nodiscard]] std::vector<bool> which_move() const;
   /// Blocks that are moving. stepper: after the last step, for the contacts that make groups of them.
-  [[nodiscard]] std::vector<MovingBlock> moving(const dynamics::Stepper& stepper) const;
+  [[nodiscard]] std::vector<record::MovingBlock> moving(const dynamics::Stepper& stepper) const;
   /// m, the largest way of a block that is in equilibrium, while it was not.
   [[nodiscard]] double astray() const { return moving_.astray(); }
   /// Share of the way to equilibrium, estimated from the logarithm of the worst balance, for a progress bar.

@@ -20,7 +20,7 @@ namespace keyblock::simulation {
 /// Properties of one block beside its shape.
 struct BlockProperties {
   std::string name;  ///< empty for cut blocks
-  Material material;
+  block::Material material;
   int order = 1;                          ///< of the displacement polynomial, ≥ 1
   bool automatic_order = false;           ///< chosen by the program; `order` is that at the start
   bool fixed = false;                     ///< neither moves nor deforms, but by `motion`
@@ -31,11 +31,11 @@ struct BlockProperties {
 
 /// Joint properties by what an edge is a piece of.
 struct JointTable {
-  JointProperties
+  contact::JointProperties
       standard;  ///< [joints]: explicit blocks, excavation outlines, and new contacts between them
-  std::vector<JointProperties> joint_sets;
-  std::vector<JointProperties> trace_maps;
-  JointProperties frame;  ///< between the rock and the frame; frictionless unless given
+  std::vector<contact::JointProperties> joint_sets;
+  std::vector<contact::JointProperties> trace_maps;
+  contact::JointProperties frame;  ///< between the rock and the frame; frictionless unless given
 };
 
 /// A pressure that holds the wall of an opening.
@@ -133,7 +133,7 @@ struct RunSetup {
   std::vector<Excavation> excavations;
 
   Vec2 gravity{0.0, -9.81};  ///< m/s²
-  std::optional<InSituStress> in_situ;
+  std::optional<block::InSituStress> in_situ;
   double time_step = 0.0;  ///< s
   std::vector<loading::GroundMotion> motions;
   std::vector<loading::Load> loads;
@@ -141,7 +141,7 @@ struct RunSetup {
   std::vector<loading::Spring> springs;
   std::vector<Water> waters;                 ///< of which a stage chooses
   std::vector<std::string> staged_supports;  ///< that stages install: names, in the order of State::installed
-  std::vector<Stage> stages;
+  std::vector<record::Stage> stages;
   std::vector<History> histories;
   DamageLimits damage;
   OutputOptions output;

@@ -10,7 +10,7 @@ namespace keyblock::simulation {
 
 /// A stage that has begun and has not ended.
 struct StageAtHand {
-  StageRecord record;
+  record::StageRecord record;
   long most_steps = 0;
   bool is_in_equilibrium = false;      ///< static: there is nothing more to do
   std::optional<Settler> settler;      ///< of a static stage

@@ -12,11 +12,11 @@ constexpr std::size_t motion_points = 4000;  // of the applied motion kept for p
 
 }  // namespace
 
-void plan_motion(const RunSetup& setup, StageRecord& record) {
-  const Stage& stage = record.stage;
-  if (stage.kind == StageKind::settle) return;
+void plan_motion(const RunSetup& setup, record::StageRecord& record) {
+  const record::Stage& stage = record.stage;
+  if (stage.kind == record::StageKind::settle) return;
   double duration = stage.duration.value_or(0.0);
-  if (stage.kind == StageKind::shake) {
+  if (stage.kind == record::StageKind::shake) {
     const loading::GroundMotion& ground = setup.motions.at(static_cast<std::size_t>(stage.motion));
     if (!stage.duration) duration = ground.duration();
     const loading::ShakingMeasures shaking = loading::measure(ground, stage.scale, duration);

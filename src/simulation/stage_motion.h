@@ -23,6 +23,6 @@ class StageMotion final : public dynamics::GroundAcceleration {
 };
 
 /// How long a dynamic stage lasts and what shakes it: known before its first step.
-void plan_motion(const RunSetup& setup, StageRecord& record);
+void plan_motion(const RunSetup& setup, record::StageRecord& record);
 
 }  // namespace keyblock::simulation

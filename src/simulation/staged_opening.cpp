@@ -43,7 +43,7 @@ void StagedOpening::start(dynamics::State& state) const {
   state.walls.left.assign(model_.blocks.size(), 0);
 }
 
-void StagedOpening::keep_forces(const Stage& stage, dynamics::State& state,
+void StagedOpening::keep_forces(const record::Stage& stage, dynamics::State& state,
                                 dynamics::Stepper& stepper) const {
   if (!is_used(state)) return;
   std::vector<std::uint8_t> goes(model_.blocks.size(), 0);
@@ -77,7 +77,7 @@ void StagedOpening::keep_forces(const Stage& stage, dynamics::State& state,
 
 void StagedOpening::begin_stage(int index, dynamics::State& state) {
   if (!is_used(state)) return;
-  const Stage& stage = setup_.stages[at(index)];
+  const record::Stage& stage = setup_.stages[at(index)];
   const std::size_t excavations = setup_.excavations.size();
   memory_.points.clear();
   memory_.part = 1;
@@ -98,13 +98,13 @@ void StagedOpening::begin_stage(int index, dynamics::State& state) {
     state.walls.pressure[e] = is_open[e] != 0 ? pressure_in(setup_.excavations[e].pressure, index) : 0.0;
 }
 
-int StagedOpening::parts(const Stage& stage) const {
+int StagedOpening::parts(const record::Stage& stage) const {
   const bool changes = std::ranges::any_of(
       stage.release, [&](const auto& of) { return of.second != memory_.before[at(of.first)]; });
   return changes ? stage.release_steps : 1;
 }
 
-void StagedOpening::release(const Stage& stage, dynamics::State& state) const {
+void StagedOpening::release(const record::Stage& stage, dynamics::State& state) const {
   const int all = parts(stage);
   for (const auto& [e, target] : stage.release) {
     const double before = memory_.before[at(e)];
@@ -113,7 +113,8 @@ void StagedOpening::release(const Stage& stage, dynamics::State& state) const {
   }
 }
 
-bool StagedOpening::go_on(const Stage& stage, dynamics::State& state, const dynamics::Stepper& stepper) {
+bool StagedOpening::go_on(const record::Stage& stage, dynamics::State& state,
+                          const dynamics::Stepper& stepper) {
   if (!is_used(state)) return false;
   if (drop_free(state, stepper)) return true;
   if (memory_.part >= parts(stage)) return false;
@@ -137,7 +138,7 @@ void StagedOpening::record_all(const dynamics::State& state) {
   }
 }
 
-std::vector<ReleasePoint> StagedOpening::end_stage(const dynamics::State& state) {
+std::vector<record::ReleasePoint> StagedOpening::end_stage(const dynamics::State& state) {
   if (!is_used(state)) return {};
   record_all(state);
   return std::move(memory_.points);

@@ -19,31 +19,31 @@ class StagedOpening {
   /// Of the run, before its first step.
   void start(dynamics::State& state) const;
   /// Before the rock of a stage is taken out, what it does to the rest.
-  void keep_forces(const Stage& stage, dynamics::State& state, dynamics::Stepper& stepper) const;
+  void keep_forces(const record::Stage& stage, dynamics::State& state, dynamics::Stepper& stepper) const;
   /// Afterwards: the first part is released, and pressures are those of the stage.
   void begin_stage(int stage, dynamics::State& state);
   /// At equilibrium: drops the loads of blocks that nothing presses or, without such, releases the next part. False where nothing is left to
   /// do.
-  bool go_on(const Stage& stage, dynamics::State& state, const dynamics::Stepper& stepper);
+  bool go_on(const record::Stage& stage, dynamics::State& state, const dynamics::Stepper& stepper);
   /// After a step.
   void drop_moved(const DamageGauge& gauge, dynamics::State& state) const;
   /// The curve of the stage.
-  std::vector<ReleasePoint> end_stage(const dynamics::State& state);
+  std::vector<record::ReleasePoint> end_stage(const dynamics::State& state);
 
   struct Memory {
     int part = 0;                ///< of the stage at hand, 1 … release_steps
     std::vector<double> before;  ///< per excavation: WallState::released as the stage began
     std::vector<std::vector<Vec2>>
         start;  ///< of each that is opened in parts: ends of the faces of its wall then
-    std::vector<ReleasePoint> points;  ///< of the stage at hand
+    std::vector<record::ReleasePoint> points;  ///< of the stage at hand
   };
   /// All that is remembered, for checkpoints.
   [[nodiscard]] Memory& memory() { return memory_; }
 
  private:
   [[nodiscard]] bool is_used(const dynamics::State& state) const { return !state.walls.left.empty(); }
-  [[nodiscard]] int parts(const Stage& stage) const;
-  void release(const Stage& stage, dynamics::State& state) const;
+  [[nodiscard]] int parts(const record::Stage& stage) const;
+  void release(const record::Stage& stage, dynamics::State& state) const;
   void record(int excavation, const dynamics::State& state);
   void record_all(const dynamics::State& state);
   /// Whether there was one that felt its loads until now.

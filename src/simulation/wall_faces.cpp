@@ -116,7 +116,8 @@ void add_stretches(const std::string& wall, const dynamics::Model& model, dynami
                    std::vector<dynamics::WallStretch>& stretches) {
   const Vec2 down = model.gravity == Vec2{} ? Vec2{0.0, -1.0} : normalized(model.gravity);
   pressure.element.resize(pressure.faces.size());
-  for (const WallPart part : {WallPart::crown, WallPart::left, WallPart::right, WallPart::invert}) {
+  for (const record::WallPart part :
+       {record::WallPart::crown, record::WallPart::left, record::WallPart::right, record::WallPart::invert}) {
     std::vector<dynamics::WallFace> of_part;
     for (std::size_t f = 0; f < pressure.faces.size(); ++f) {
       // The rock is on the left of its edge.
@@ -125,9 +126,9 @@ void add_stretches(const std::string& wall, const dynamics::Model& model, dynami
       of_part.push_back(pressure.faces[f]);
     }
     if (of_part.empty()) continue;
-    const bool is_level = part == WallPart::crown || part == WallPart::invert;
+    const bool is_level = part == record::WallPart::crown || part == record::WallPart::invert;
     dynamics::WallStretch& stretch = stretches.emplace_back();
-    stretch.name = fmt::format("{}.{}", wall, wall_part_name(part));
+    stretch.name = fmt::format("{}.{}", wall, record::wall_part_name(part));
     // To the right; upwards.
     set_ends(model, of_part, is_level ? perpendicular(down) : -1.0 * down, stretch);
   }
@@ -171,7 +172,7 @@ std::shared_ptr<const dynamics::Coupling> wall_loads(const RunSetup& setup, cons
     add_stretches(setup.excavations[e].name, model, pressures.back(), stretches);
   }
   const bool releases =
-      std::ranges::any_of(setup.stages, [](const Stage& stage) { return !stage.release.empty(); });
+      std::ranges::any_of(setup.stages, [](const record::Stage& stage) { return !stage.release.empty(); });
   if (pressures.empty() && !releases) return nullptr;
   return std::make_shared<dynamics::WallLoads>(std::move(pressures), std::move(stretches));
 }

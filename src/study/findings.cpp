@@ -57,13 +57,13 @@ std::string curve_line(const StudyData& study, const FragilityGroup& group) {
 /// Empty where the balance of all runs closes.
 std::string balance_line(const StudyData& study) {
   const auto is_doubtful = [](const RunResult& run) {
-    return run.error.empty() && run.energy_residual_ratio > simulation::doubtful_residual;
+    return run.error.empty() && run.energy_residual_ratio > record::doubtful_residual;
   };
   const auto doubtful = std::ranges::count_if(study.runs, is_doubtful);
   if (doubtful == 0) return {};
   return fmt::format(
       "{} of {} runs: the balance of energies misses more than {:.0f} %, {}; see runs.csv", doubtful,
-      study.runs.size(), 100.0 * simulation::doubtful_residual,
+      study.runs.size(), 100.0 * record::doubtful_residual,
       std::ranges::find_if(study.runs, is_doubtful)->key + (doubtful > 1 ? " and others" : ""));
 }
 

@@ -67,7 +67,7 @@ Observations observed(const StudyData& study, const Summary& summary, const Grou
   const bool all_counts = study.since.empty() && !study.before.empty();
   Observations runs;
   std::set<int> seen;
-  const auto add = [&](double x, const simulation::Damage& damage, int realization) {
+  const auto add = [&](double x, const record::Damage& damage, int realization) {
     const double value = measure.of(damage);
     if (!std::isnan(value)) runs.push_back({x, value > threshold, realization});
   };

@@ -13,7 +13,7 @@
 namespace keyblock::study {
 namespace {
 
-using simulation::BlockStatus;
+using record::BlockStatus;
 
 constexpr double drawing_width = 640.0, line_height = 20.0;  // px
 constexpr int legend_digits = 4;

@@ -24,7 +24,7 @@ struct HoldMap {
 
 /// trials: values of the key and the map of each run (RunResult::map).
 HoldMap hold_map(const MapGrid& grid, const std::vector<Ring>& outlines, double from,
-                 std::vector<std::pair<double, const std::vector<simulation::BlockStatus>*>> trials);
+                 std::vector<std::pair<double, const std::vector<record::BlockStatus>*>> trials);
 
 /// A line for every cell whose rock does not hold in all trials: x and y of its middle, m, and the value; empty where it goes at `from` already.
 std::string hold_map_csv(const HoldMap& map);

@@ -32,7 +32,7 @@ int scan_of(const std::string& key) {
 }
 
 bool LimitTrial::goes() const {
-  return standing != simulation::Standing::stands && standing != simulation::Standing::rocks;
+  return standing != record::Standing::stands && standing != record::Standing::rocks;
 }
 
 const LimitTrial* RealizationLimit::trial_at(double value) const {
@@ -115,12 +115,12 @@ std::vector<LimitShare> LimitResult::met_shares() const {
 LimitTrial limit_trial(const LimitRequest& request, double value, const RunResult& run) {
   const LimitCriterion& criterion = request.criterion;
   const StageMeasures& deciding = deciding_stage(run);
-  const simulation::Damage damage =
+  const record::Damage damage =
       damage_between(run, request.since, "").value_or(run.stages.at(run.stages.size() - 1).damage);
   LimitTrial trial;
   trial.value = value;
   trial.run = run.key;
-  trial.measure = simulation::damage_value(damage, criterion.measure);
+  trial.measure = record::damage_value(damage, criterion.measure);
   trial.standing = deciding.standing;
   trial.moving_area = damage.moving_area;
   trial.met = criterion.is_met(trial.measure, run.block_size, deciding);

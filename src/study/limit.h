@@ -36,10 +36,10 @@ struct LimitTrial {
   double value = 0.0;
   std::string run;  ///< key of the run
   double measure = 0.0;
-  simulation::Standing standing = simulation::Standing::stands;
+  record::Standing standing = record::Standing::stands;
   bool met = false;
   std::string state_hash;
-  simulation::Movers movers = {};
+  record::Movers movers = {};
   std::string heaviest = {};  ///< name of the heaviest of them; empty for cut blocks
   double pga = 0.0;           ///< m/s², of the stage that the key is of; 0: none
   double moving_area = 0.0;   ///< m², of blocks that move or have fallen

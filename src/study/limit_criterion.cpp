@@ -15,8 +15,8 @@
 namespace keyblock::study {
 namespace {
 
-using simulation::StageKind;
-using simulation::Standing;
+using record::StageKind;
+using record::Standing;
 
 constexpr const char* distance_measure = "displacement_max_m";
 constexpr const char* distance_in_stage = "stage_displacement_m";
@@ -120,7 +120,7 @@ LimitEnd limit_end(const scenario::Scenario& scenario) {
   if (scenario.stages.back().kind == StageKind::settle) return LimitEnd::settled;
   const bool is_shaken =
       std::any_of(scenario.stages.begin(), scenario.stages.end(),
-                  [](const simulation::Stage& stage) { return stage.kind == StageKind::shake; }) ||
+                  [](const record::Stage& stage) { return stage.kind == StageKind::shake; }) ||
       std::any_of(scenario.blocks.begin(), scenario.blocks.end(), [](const scenario::BlockSpec& block) {
         return !block.motion_x.empty() || !block.motion_y.empty();
       });
@@ -139,7 +139,7 @@ const LimitDefault& limit_default(const scenario::Scenario& scenario) {
 }
 
 bool needs_rest(const LimitCriterion& criterion, const scenario::Scenario& scenario) {
-  const simulation::Stage& last = scenario.stages.back();
+  const record::Stage& last = scenario.stages.back();
   const bool waits = last.kind == StageKind::rest && last.until_still;
   return criterion.by_standing && !waits && limit_end(scenario) == LimitEnd::shaken;
 }

@@ -40,7 +40,7 @@ ordered_json trial_json(const LimitTrial& trial) {
           {"met", trial.met},
           {"measure", results::number_or_null(trial.measure)},
           {"moving_area_m2", results::number_or_null(trial.moving_area)},
-          {"standing", simulation::standing_name(trial.standing)},
+          {"standing", record::standing_name(trial.standing)},
           {"movers", results::movers_json(trial.movers)},
           {"run", "runs/" + trial.run},
           {"state_hash", trial.state_hash}};

@@ -52,7 +52,7 @@ void check_request(const LimitRequest& request) {
 }
 
 /// A stage before the last one.
-void check_since(const LimitRequest& request, std::span<const simulation::Stage> stages) {
+void check_since(const LimitRequest& request, std::span<const record::Stage> stages) {
   if (request.since.empty()) return;
   if (request.criterion.by_standing)
     refuse("--since", '"' + request.since + '"',
@@ -70,8 +70,8 @@ void check_since(const LimitRequest& request, std::span<const simulation::Stage>
 void check_measure(const LimitRequest& request, const scenario::Scenario& scenario) {
   const auto yields = [](const loading::Spring& spring) { return spring.yield.has_value(); };
   if (std::ranges::any_of(scenario.springs, yields)) return;
-  simulation::for_damage_fields([&](const auto& field) {
-    if (request.criterion.measure == field.name && field.column.table == simulation::DamageTable::elements)
+  record::for_damage_fields([&](const auto& field) {
+    if (request.criterion.measure == field.name && field.column.table == record::DamageTable::elements)
       refuse("--until", '"' + request.criterion.measure + '"',
              "a measure that the scenario has: no [[spring]] has a yield");
   });
@@ -95,7 +95,7 @@ std::string what_is_reduced(const scenario::Scenario& scenario) {
       "strength of {} is reduced from the end of \"{}\" on",
       safety.sets.empty() ? "all joints" : scenario::list_words(safety.sets, " and "), safety.stage);
   std::vector<std::string> names;
-  for (const simulation::Stage& stage : scenario.left_out) names.push_back(stage.name);
+  for (const record::Stage& stage : scenario.left_out) names.push_back(stage.name);
   if (!names.empty())
     text += fmt::format("; not run, with what {}: {}", names.size() == 1 ? "it does" : "they do",
                         scenario::list_words(names, " and "));

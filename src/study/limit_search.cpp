@@ -49,7 +49,7 @@ class Search {
 
   /// Of one realization.
   HoldMap holds() {
-    std::vector<std::pair<double, const std::vector<simulation::BlockStatus>*>> trials;
+    std::vector<std::pair<double, const std::vector<record::BlockStatus>*>> trials;
     if (result_.realizations.size() > 1) return {};
     for (const LimitTrial& trial : result_.realizations.front().trials)
       trials.emplace_back(

@@ -13,7 +13,7 @@
 namespace keyblock::study {
 namespace {
 
-using simulation::Standing;
+using record::Standing;
 using Status = Bisection::Status;
 
 constexpr std::size_t most_lines = 20;  // of realizations, in the text
@@ -87,7 +87,7 @@ std::string block_text(const LimitTrial& trial) {
 
 /// Who does what: "block 3 (6797 kN/m) moves", "3 blocks (12.5 kN/m) have fallen, the heaviest block 292 (7.2 kN/m)".
 std::string movers_text(const LimitTrial& trial) {
-  const simulation::StandingWord& word = simulation::word_of(trial.standing);
+  const record::StandingWord& word = record::word_of(trial.standing);
   if (trial.standing == Standing::unsettled) return "no equilibrium is found";
   if (trial.standing == Standing::stands || trial.movers.heaviest < 0)
     return fmt::format("the blocks {}", word.several);

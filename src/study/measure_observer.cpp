@@ -10,11 +10,11 @@
 namespace keyblock::study {
 namespace {
 
-using simulation::BlockStatus;
+using record::BlockStatus;
 
 // Where the outlines of a block cross the horizontal line at y, ascending. A vertex on the line counts as above it.
-std::vector<double> crossings(const simulation::ModelRecord& model,
-                              const simulation::ModelRecord::Block& block, double y) {
+std::vector<double> crossings(const record::ModelRecord& model, const record::ModelRecord::Block& block,
+                              double y) {
   std::vector<double> x;
   for (std::size_t r = 0; r + 1 < block.ring_start.size(); ++r) {
     const int begin = block.ring_start[r], end = block.ring_start[r + 1];
@@ -31,8 +31,7 @@ std::vector<double> crossings(const simulation::ModelRecord& model,
 
 }  // namespace
 
-std::vector<int> blocks_of_cells(const MapGrid& grid, const simulation::ModelRecord& model,
-                                 std::size_t blocks) {
+std::vector<int> blocks_of_cells(const MapGrid& grid, const record::ModelRecord& model, std::size_t blocks) {
   std::vector<int> cells(at(grid.columns) * at(grid.rows), -1);
   const Vec2 corner = grid.corner - model.origin;
   // The first cell whose centre lies at or beyond a coordinate, within 0 … count.
@@ -58,7 +57,7 @@ std::vector<int> blocks_of_cells(const MapGrid& grid, const simulation::ModelRec
   return cells;
 }
 
-void MeasureObserver::begin(const simulation::ModelRecord& model) {
+void MeasureObserver::begin(const record::ModelRecord& model) {
   model_ = model;
   result_.blocks = static_cast<int>(blocks_);
   double area = 0.0, moving = 0.0;
@@ -75,43 +74,43 @@ std::string MeasureObserver::name_of(int block) const {
   return block < 0 ? std::string() : model_.blocks[at(block)].name;
 }
 
-void MeasureObserver::stage_begin(int /*index*/, const simulation::StageRecord& stage) {
+void MeasureObserver::stage_begin(int /*index*/, const record::StageRecord& stage) {
   mechanism_ = {};
-  stage_begins_ = stage.stage.kind == simulation::StageKind::settle;
+  stage_begins_ = stage.stage.kind == record::StageKind::settle;
 }
 
-void MeasureObserver::frame(const simulation::Frame& frame) {
+void MeasureObserver::frame(const record::Frame& frame) {
   last_ = frame;
   if (stage_begins_) mechanism_.start = frame;
   stage_begins_ = false;
 }
 
-void MeasureObserver::contacts(const simulation::ContactFrame& frame) {
+void MeasureObserver::contacts(const record::ContactFrame& frame) {
   if (mechanism_.is_known()) mechanism_.contacts = frame.contacts;
 }
 
-void MeasureObserver::stage_end(int index, const simulation::StageRecord& stage) {
+void MeasureObserver::stage_end(int index, const record::StageRecord& stage) {
   if (stage.moving.empty()) mechanism_ = {};
   if (stage.interrupted) return;
   result_.stages.push_back({stage.stage.name, stage.stage.kind, stage.pga, stage.pgv, stage.arias,
                             stage.damage,
-                            simulation::standing_of(stage, loosened_, !model_.excavation_names.empty()),
+                            record::standing_of(stage, loosened_, !model_.excavation_names.empty()),
                             stage.movers, name_of(stage.movers.heaviest)});
   fallen_ = stage.fallen;
   std::vector<int> fell(blocks_, -1);
-  for (const simulation::FallenBlock& block : fallen_)
+  for (const record::FallenBlock& block : fallen_)
     fell[at(block.block)] = fell_[at(block.block)] < 0 ? index : fell_[at(block.block)];
   fell_ = std::move(fell);
 }
 
-void MeasureObserver::end(const simulation::RunRecord& run) {
+void MeasureObserver::end(const record::RunRecord& run) {
   result_.steps = run.steps;
   result_.wall_time = run.wall_time;
   result_.state_hash = run.state_hash;
   result_.unconverged_steps = run.open_close.unconverged_steps;
   result_.max_overlap = run.max_overlap.depth;
   result_.energy_residual_ratio = run.energy.residual_ratio;
-  for (const simulation::FallenBlock& f : fallen_) {
+  for (const record::FallenBlock& f : fallen_) {
     const auto& block = model_.blocks[at(f.block)];
     result_.fallen.push_back({f.block, block.name, fell_[at(f.block)], block.centroid + model_.origin, f.area,
                               f.weight, f.depth, f.part});

@@ -9,22 +9,22 @@
 namespace keyblock::study {
 
 /// Gathers the measures of a run. A block fell in the first stage from whose end on it has always counted as fallen.
-class MeasureObserver : public simulation::RunObserver {
+class MeasureObserver : public record::RunObserver {
  public:
   /// Fills `result` (except for key, realization, values, variant and error), which must outlive the run. The first `blocks`
   /// blocks of the model are the rock; a frame comes after them. loosened: m, of DamageLimits.
   MeasureObserver(RunResult& result, const MapGrid& grid, std::size_t blocks, double loosened)
       : result_(result), grid_(grid), blocks_(blocks), loosened_(loosened) {}
 
-  void begin(const simulation::ModelRecord& model) override;
-  void stage_begin(int index, const simulation::StageRecord& stage) override;
-  void frame(const simulation::Frame& frame) override;
-  void contacts(const simulation::ContactFrame& frame) override;
-  void stage_end(int index, const simulation::StageRecord& stage) override;
-  void end(const simulation::RunRecord& run) override;
+  void begin(const record::ModelRecord& model) override;
+  void stage_begin(int index, const record::StageRecord& stage) override;
+  void frame(const record::Frame& frame) override;
+  void contacts(const record::ContactFrame& frame) override;
+  void stage_end(int index, const record::StageRecord& stage) override;
+  void end(const record::RunRecord& run) override;
 
-  [[nodiscard]] const simulation::ModelRecord& model() const { return model_; }
-  [[nodiscard]] const simulation::Frame& last_frame() const { return last_; }
+  [[nodiscard]] const record::ModelRecord& model() const { return model_; }
+  [[nodiscard]] const record::Frame& last_frame() const { return last_; }
   /// Of the last stage, where it is static and blocks move in it; else not known.
   [[nodiscard]] const Mechanism& mechanism() const { return mechanism_; }
 
@@ -35,17 +35,16 @@ class MeasureObserver : public simulation::RunObserver {
   MapGrid grid_;
   std::size_t blocks_;
   double loosened_;
-  simulation::ModelRecord model_;
-  simulation::Frame last_;
+  record::ModelRecord model_;
+  record::Frame last_;
   Mechanism mechanism_;
   bool stage_begins_ = false;
-  std::vector<int> fell_;                        ///< stage of every block; −1: has not fallen
-  std::vector<simulation::FallenBlock> fallen_;  ///< at the end of the last stage
+  std::vector<int> fell_;                    ///< stage of every block; −1: has not fallen
+  std::vector<record::FallenBlock> fallen_;  ///< at the end of the last stage
 };
 
 /// Of every cell of the grid, row by row from the lower left, the index of the block in whose reference outline its centre
 /// lies, among the first `blocks` of the model; −1 where there is none.
-std::vector<int> blocks_of_cells(const MapGrid& grid, const simulation::ModelRecord& model,
-                                 std::size_t blocks);
+std::vector<int> blocks_of_cells(const MapGrid& grid, const record::ModelRecord& model, std::size_t blocks);
 
 }  // namespace keyblock::study

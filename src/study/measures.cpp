@@ -31,14 +31,14 @@ const std::array<Intensity, 3> all_intensities{
 
 }  // namespace
 
-double Measure::of(const simulation::Damage& damage) const {
-  return simulation::damage_value(damage, name);
+double Measure::of(const record::Damage& damage) const {
+  return record::damage_value(damage, name);
 }
 
 std::span<const Measure> measures() {
   static const std::vector<Measure> all = [] {
     std::vector<Measure> made;
-    simulation::for_damage_fields([&](const auto& field) {
+    record::for_damage_fields([&](const auto& field) {
       made.push_back({field.name, field.title, field.unit, field.shown.unit, field.shown.factor});
     });
     return made;
@@ -52,8 +52,8 @@ std::optional<std::size_t> find_measure(std::string_view name) {
   return std::nullopt;
 }
 
-std::optional<simulation::Damage> damage_between(const RunResult& run, std::string_view since,
-                                                 std::string_view stage) {
+std::optional<record::Damage> damage_between(const RunResult& run, std::string_view since,
+                                             std::string_view stage) {
   if (!run.error.empty() || run.stages.empty()) return std::nullopt;
   const auto named = [&](std::string_view name) {
     return std::find_if(run.stages.begin(), run.stages.end(),
@@ -61,23 +61,23 @@ std::optional<simulation::Damage> damage_between(const RunResult& run, std::stri
   };
   const auto end = stage.empty() ? run.stages.end() - 1 : named(stage);
   if (end == run.stages.end()) return std::nullopt;
-  simulation::Damage damage = end->damage;
+  record::Damage damage = end->damage;
   if (since.empty()) return damage;
   const auto start = named(since);
   if (start == run.stages.end()) return std::nullopt;
-  for (const auto& field : simulation::damage_counts) damage.*field.number -= start->damage.*field.number;
-  for (const auto& field : simulation::damage_fields)
+  for (const auto& field : record::damage_counts) damage.*field.number -= start->damage.*field.number;
+  for (const auto& field : record::damage_fields)
     damage.*field.number = difference(damage.*field.number, start->damage.*field.number);
   // Of the stage and its end alone.
   damage.stage_displacement = end->damage.stage_displacement;
   damage.moving_area = end->damage.moving_area;
   // What fell between: the difference of two extremes would be of no block.
-  std::vector<simulation::FallenBlock> fallen;
+  std::vector<record::FallenBlock> fallen;
   for (const FallenBlock& f : run.fallen) {
     if (f.stage > start - run.stages.begin() && f.stage <= end - run.stages.begin())
       fallen.push_back({f.block, f.area, f.weight, f.depth, f.part});
   }
-  simulation::set_extremes(fallen, damage);
+  record::set_extremes(fallen, damage);
   return damage;
 }
 

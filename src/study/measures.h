@@ -16,7 +16,7 @@ struct Measure {
   std::string unit;           ///< "m²"; empty for counts and ratios
   std::string shown_unit;     ///< in which pages show it: of a weight, "kN/m" per metre of tunnel
   double shown_factor = 1.0;  ///< numbers times this are in that unit
-  [[nodiscard]] double of(const simulation::Damage& damage) const;
+  [[nodiscard]] double of(const record::Damage& damage) const;
 };
 
 /// All measures, in the order of summary.json.
@@ -28,8 +28,8 @@ std::optional<std::size_t> find_measure(std::string_view name);
 /// What happened to a run until the end of `stage` (empty: its last), less what had happened by the end of `since` (empty:
 /// nothing). Differences are rounded to 1e-9 m², m or shares. The largest fallen block and the depths of fallen rock are those of the blocks
 /// that fell between. None when the run failed or did not get there.
-std::optional<simulation::Damage> damage_between(const RunResult& run, std::string_view since,
-                                                 std::string_view stage);
+std::optional<record::Damage> damage_between(const RunResult& run, std::string_view since,
+                                             std::string_view stage);
 
 /// Kinds of intensity of shaking.
 struct Intensity {

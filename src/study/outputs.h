@@ -14,15 +14,15 @@ Summary write_outputs(const std::filesystem::path& directory, const StudyData& s
 
 /// How rock moves in a stage: from where, and which joints slip.
 struct Mechanism {
-  simulation::Frame start;  ///< as the stage began
-  std::vector<simulation::ContactRecord> contacts;
+  record::Frame start;  ///< as the stage began
+  std::vector<record::ContactRecord> contacts;
 
   [[nodiscard]] bool is_known() const { return !start.displacement.empty(); }
 };
 
 /// The surroundings of the openings at one moment of a run, as a small SVG of its own: blocks filled by their status. Of a mechanism also arrows
 /// along which blocks move that are loosened or fallen, the longest for the farthest, and joints beside them that slip.
-std::string thumbnail_svg(const simulation::ModelRecord& model, const simulation::Frame& frame,
+std::string thumbnail_svg(const record::ModelRecord& model, const record::Frame& frame,
                           const Mechanism& mechanism = {});
 
 }  // namespace keyblock::study

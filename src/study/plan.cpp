@@ -119,7 +119,7 @@ void list_runs(Plan& plan, const std::vector<std::string>& variants) {
 
 /// The last stage before the shaking, where that is before the stage `measured`.
 std::string stage_before_shaking(const Scenario& scenario, const std::string& measured) {
-  const auto last = simulation::last_before_shaking(scenario.stages);
+  const auto last = record::last_before_shaking(scenario.stages);
   if (!last) return {};
   for (std::size_t k = 0; k <= *last; ++k) {
     if (scenario.stages[k].name == measured) return {};
@@ -143,7 +143,7 @@ std::string no_release_warning(const Plan& plan) {
 /// Measures can only begin before they end.
 void check_order(const scenario::Scenario& scenario, const Plan& plan) {
   if (plan.since.empty()) return;
-  for (const simulation::Stage& stage : scenario.stages) {
+  for (const record::Stage& stage : scenario.stages) {
     if (stage.name == plan.stage) {
       throw InputError(Diagnostic{scenario.where("study.since"), "study.since", '"' + plan.since + '"',
                                   "a stage before \"" + plan.stage + "\"", ""});

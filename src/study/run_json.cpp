@@ -13,9 +13,9 @@ namespace keyblock::study {
 namespace {
 
 using nlohmann::ordered_json;
+using record::BlockStatus;
+using record::StageKind;
 using results::number;
-using simulation::BlockStatus;
-using simulation::StageKind;
 
 constexpr int run_format = 5;
 constexpr std::uint64_t largest_map = 4'000'000;  // cells
@@ -40,7 +40,7 @@ StageMeasures read_stage(const ordered_json& json) {
   }
   for (const Intensity& intensity : intensities()) stage.*intensity.of = number(json.at(intensity.name));
   stage.damage = results::read_damage(json.at("damage"));
-  stage.standing = results::read_standing(json.at("standing")).value_or(simulation::Standing::unsettled);
+  stage.standing = results::read_standing(json.at("standing")).value_or(record::Standing::unsettled);
   stage.movers = results::read_movers(json.at("movers"));
   json.at("heaviest_name").get_to(stage.heaviest);
   return stage;
@@ -96,7 +96,7 @@ RunResult read_result(const ordered_json& json) {
                           number(block.at("area_m2")),
                           number(block.at("weight_n_m")),
                           number(block.at("depth_m")),
-                          simulation::wall_part_of(wall.is_null() ? "" : wall.get<std::string>())});
+                          record::wall_part_of(wall.is_null() ? "" : wall.get<std::string>())});
   }
   run.map = read_map(json.at("map"));
   return run;
@@ -108,7 +108,7 @@ std::string run_json(const RunResult& run, const std::string& input) {
   ordered_json stages = ordered_json::array(), fallen = ordered_json::array();
   for (const StageMeasures& stage : run.stages) stages.push_back(stage_json(stage));
   for (const FallenBlock& block : run.fallen) {
-    const char* wall = simulation::wall_part_name(block.part);
+    const char* wall = record::wall_part_name(block.part);
     fallen.push_back({{"block", block.block},
                       {"name", block.name},
                       {"stage", block.stage},

@@ -21,13 +21,13 @@ struct MapGrid {
 /// The shaking of a stage and what had happened by its end. Measures are cumulative since the first excavation.
 struct StageMeasures {
   std::string name;
-  simulation::StageKind kind = simulation::StageKind::settle;
+  record::StageKind kind = record::StageKind::settle;
   double pga = 0.0;    ///< m/s², largest length of the scaled ground acceleration in the section
   double pgv = 0.0;    ///< m/s, the same of the ground velocity
   double arias = 0.0;  ///< m/s, sum of both components: π/(2g) ∫ a² dt
-  simulation::Damage damage;
-  simulation::Standing standing = simulation::Standing::stands;  ///< around openings, too
-  simulation::Movers movers = {};
+  record::Damage damage;
+  record::Standing standing = record::Standing::stands;  ///< around openings, too
+  record::Movers movers = {};
   std::string heaviest = {};  ///< name of the heaviest of them; empty for cut blocks
 };
 
@@ -37,8 +37,8 @@ struct FallenBlock {
   int stage = 0;                     ///< in which it fell
   Vec2 centroid;                     ///< where it lay, real coordinates, m
   double area = 0.0;                 ///< m²
-  double weight = 0.0, depth = 0.0;  ///< N per metre of tunnel, m behind the wall: simulation::FallenBlock
-  simulation::WallPart part = simulation::WallPart::none;
+  double weight = 0.0, depth = 0.0;  ///< N per metre of tunnel, m behind the wall: record::FallenBlock
+  record::WallPart part = record::WallPart::none;
 };
 
 /// One realization × one combination × one variant, when it has ended.
@@ -61,7 +61,7 @@ struct RunResult {
   std::vector<StageMeasures> stages;
   std::vector<FallenBlock> fallen;
   /// Of every cell of the study's grid: where the rock that lay there is at the end.
-  std::vector<simulation::BlockStatus> map;
+  std::vector<record::BlockStatus> map;
 };
 
 /// An axis of the grid of a study: a [[study.vary]] table.

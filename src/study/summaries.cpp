@@ -41,7 +41,7 @@ void choose_worst_and_median(const StudyData& study, Combination& c) {
   if (c.runs.empty()) return;
   std::vector<std::size_t> order = c.runs;
   const auto rank = [&](std::size_t r) {
-    const simulation::Damage d = *measured(study, study.runs[r]).damage;
+    const record::Damage d = *measured(study, study.runs[r]).damage;
     return std::tuple(d.fallen_area, d.loosened_area, d.slip_max_ever, -study.runs[r].realization);
   };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
@@ -49,12 +49,12 @@ void choose_worst_and_median(const StudyData& study, Combination& c) {
   c.median = order[(order.size() - 1) / 2];
 }
 
-using Damages = std::vector<simulation::Damage>;
+using Damages = std::vector<record::Damage>;
 
 /// Of those that have the measure, in their order.
 std::vector<double> values_of(const Measure& measure, const Damages& damages) {
   std::vector<double> values;
-  for (const simulation::Damage& d : damages) {
+  for (const record::Damage& d : damages) {
     const double value = measure.of(d);
     if (!std::isnan(value)) values.push_back(value);
   }
@@ -135,7 +135,7 @@ void part_at_shaking(const StudyData& study, ResampleStore& store, Combination& 
 }
 
 void count_cells(const StudyData& study, Combination& c) {
-  using simulation::BlockStatus;
+  using record::BlockStatus;
   if (study.grid.columns <= 0 || study.grid.rows <= 0) return;
   const std::size_t cells = at(study.grid.columns) * at(study.grid.rows);
   std::vector<int> rock(cells, 0);

@@ -20,8 +20,8 @@ inline constexpr double smallest_marginal_area = 0.01;
 
 /// What happened to a run between the ends of StudyData::since and StudyData::stage, and the strongest shaking.
 struct Measured {
-  std::optional<simulation::Damage> damage;  ///< none where the run failed or did not get there
-  std::array<double, 3> intensity{};         ///< as intensities(): largest over the stages between
+  std::optional<record::Damage> damage;  ///< none where the run failed or did not get there
+  std::array<double, 3> intensity{};     ///< as intensities(): largest over the stages between
 };
 Measured measured(const StudyData& study, const RunResult& run);
 

@@ -65,7 +65,7 @@ class Task {
     MeasureObserver measures(result_, plan_.grid, setup.system.blocks.size(), setup.damage.loosened_distance);
     std::unique_ptr<results::ResultWriter> writer;
     std::unique_ptr<MemoryRecorder> memory;
-    std::vector<simulation::RunObserver*> observers{&measures};
+    std::vector<record::RunObserver*> observers{&measures};
     if (plan_.keep == Keep::all) {
       writer = std::make_unique<results::ResultWriter>(folder_);
       observers.push_back(writer.get());
@@ -74,14 +74,14 @@ class Task {
       memory = std::make_unique<MemoryRecorder>();
       observers.push_back(memory.get());
     }
-    std::vector<std::unique_ptr<simulation::RunObserver>> others;
+    std::vector<std::unique_ptr<record::RunObserver>> others;
     if (options.observers) others = options.observers(setup);
     for (const auto& other : others) observers.push_back(other.get());
-    simulation::FanOut fan(observers);
+    record::FanOut fan(observers);
     simulation::RunOptions run_options;
     run_options.stop = options.stop;
     run_options.after_step = options.after_step;
-    const simulation::RunRecord record = simulation::run(setup, run_options, fan);
+    const record::RunRecord record = simulation::run(setup, run_options, fan);
     writer.reset();
     if (record.interrupted) return TaskOutcome::interrupted;
     if (memory) {
@@ -90,7 +90,7 @@ class Task {
     }
     write_file_atomically(folder_ / "thumbnail.svg",
                           thumbnail_svg(measures.model(), measures.last_frame(), measures.mechanism()));
-    simulation::check_computation(record);
+    record::check_computation(record);
     write_file_atomically(folder_ / "run.json", run_json(result_, run_input(plan_)));
     return TaskOutcome::done;
   }

@@ -24,7 +24,7 @@ enum class TaskOutcome {
 struct TaskOptions {
   const std::atomic<bool>* stop = nullptr;
   /// Makes those that are told of the run as it goes on, when it begins; may be empty.
-  std::function<std::vector<std::unique_ptr<simulation::RunObserver>>(const simulation::RunSetup&)> observers;
+  std::function<std::vector<std::unique_ptr<record::RunObserver>>(const simulation::RunSetup&)> observers;
   /// Programs that steer the run, with their hashes; and what is called after each step (RunOptions::after_step).
   std::vector<std::pair<std::string, std::string>> hooks;
   std::function<void(simulation::Runner&, const dynamics::StepReport&)> after_step;

@@ -50,7 +50,7 @@ struct Unit {
 
 class Drawing {
  public:
-  Drawing(const simulation::ModelRecord& model, const simulation::Frame& frame, const Mechanism& mechanism)
+  Drawing(const record::ModelRecord& model, const record::Frame& frame, const Mechanism& mechanism)
       : model_(model), frame_(frame), mechanism_(mechanism) {
     for (const auto& outline : model.excavation_outlines)
       for (const Vec2 p : outline) window_.add(p);
@@ -157,9 +157,8 @@ class Drawing {
   [[nodiscard]] std::string slips(double scale, int resolution) const {
     std::string path;
     std::size_t count = 0;
-    for (const simulation::ContactRecord& c : mechanism_.contacts) {
-      if (c.state != simulation::ContactState::sliding || !(goes(at(c.block_a)) || goes(at(c.block_b))))
-        continue;
+    for (const record::ContactRecord& c : mechanism_.contacts) {
+      if (c.state != record::ContactState::sliding || !(goes(at(c.block_a)) || goes(at(c.block_b)))) continue;
       if (count++ == most_slips) break;
       const Vec2 half = 0.5 * c.length * Vec2{-c.normal.y, c.normal.x};
       const Unit a = unit(c.position - half, scale), b = unit(c.position + half, scale);
@@ -183,16 +182,15 @@ class Drawing {
   /// None: excavated, not drawn.
   [[nodiscard]] std::optional<Class> class_of(std::size_t block) const {
     if (model_.blocks[block].fixed) return Class::fixed;
-    const auto status =
-        block < frame_.status.size() ? frame_.status[block] : simulation::BlockStatus::in_place;
+    const auto status = block < frame_.status.size() ? frame_.status[block] : record::BlockStatus::in_place;
     switch (status) {
-      case simulation::BlockStatus::excavated:
+      case record::BlockStatus::excavated:
         return std::nullopt;
-      case simulation::BlockStatus::fallen:
+      case record::BlockStatus::fallen:
         return Class::fallen;
-      case simulation::BlockStatus::loosened:
+      case record::BlockStatus::loosened:
         return Class::loosened;
-      case simulation::BlockStatus::in_place:
+      case record::BlockStatus::in_place:
         break;
     }
     return Class::rock;
@@ -252,15 +250,15 @@ class Drawing {
     fmt::format_to(std::back_inserter(path), "{}{}{}", x, y < 0 ? "" : " ", y);
   }
 
-  const simulation::ModelRecord& model_;
-  const simulation::Frame& frame_;
+  const record::ModelRecord& model_;
+  const record::Frame& frame_;
   const Mechanism& mechanism_;
   Box window_;
 };
 
 }  // namespace
 
-std::string thumbnail_svg(const simulation::ModelRecord& model, const simulation::Frame& frame,
+std::string thumbnail_svg(const record::ModelRecord& model, const record::Frame& frame,
                           const Mechanism& mechanism) {
   const Drawing drawing(model, frame, mechanism);
   std::string svg;

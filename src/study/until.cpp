@@ -60,7 +60,7 @@ double excess(const std::optional<MeanInterval>& interval, const scenario::Until
 std::optional<double> measured(const Plan& plan, const RunResult& run) {
   const auto damage = damage_between(run, plan.since, plan.stage);
   if (!damage) return std::nullopt;
-  const double value = simulation::damage_value(*damage, plan.until->measure);
+  const double value = record::damage_value(*damage, plan.until->measure);
   return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 

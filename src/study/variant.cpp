@@ -10,8 +10,8 @@
 namespace keyblock::study {
 namespace {
 
-using simulation::Stage;
-using simulation::StageKind;
+using record::Stage;
+using record::StageKind;
 
 constexpr double steepest_friction = 89.9;  // °
 

@@ -220,9 +220,9 @@ WorkerOutcome run_workers(const fs::path& directory, const Plan& plan, StudyFile
 
 ProgressPipe::ProgressPipe(int descriptor, const simulation::RunSetup& setup)
     : descriptor_(descriptor), weight_before_{0.0} {
-  for (const simulation::Stage& stage : setup.stages) {
+  for (const record::Stage& stage : setup.stages) {
     double steps = settle_weight;
-    if (stage.kind != simulation::StageKind::settle) {
+    if (stage.kind != record::StageKind::settle) {
       const double duration =
           stage.duration.value_or(stage.motion < 0 ? 0.0 : setup.motions.at(at(stage.motion)).duration());
       steps = duration / setup.time_step;
@@ -231,7 +231,7 @@ ProgressPipe::ProgressPipe(int descriptor, const simulation::RunSetup& setup)
   }
 }
 
-void ProgressPipe::progress(const simulation::Progress& progress) {
+void ProgressPipe::progress(const record::Progress& progress) {
   const auto k = at(progress.stage);
   const double weight = weight_before_[k] + progress.fraction * (weight_before_[k + 1] - weight_before_[k]);
   const double fraction = weight / weight_before_.back();

@@ -45,10 +45,10 @@ WorkerOutcome run_workers(const std::filesystem::path& directory, const Plan& pl
 
 /// Passes the fraction of a run that is done on to its parent, as doubles through a pipe; stage k of a run counts as many
 /// steps as it has, a settling stage as `settle_weight`.
-class ProgressPipe : public simulation::RunObserver {
+class ProgressPipe : public record::RunObserver {
  public:
   ProgressPipe(int descriptor, const simulation::RunSetup& setup);
-  void progress(const simulation::Progress& progress) override;
+  void progress(const record::Progress& progress) override;
 
  private:
   int descriptor_;

@@ -48,23 +48,23 @@ void flatten(const nlohmann::json& value, const std::string& path, Numbers& numb
 }
 
 /// Keeps what quantities may ask for.
-class Memory final : public simulation::RunObserver {
+class Memory final : public record::RunObserver {
  public:
   explicit Memory(Outcome& outcome) : outcome_(outcome) {}
 
-  void begin(const simulation::ModelRecord& model) override {
+  void begin(const record::ModelRecord& model) override {
     model_ = model;
     if (!outcome_.columns.empty()) return;  // resumed
     outcome_.columns = results::history_columns(model);
   }
-  void history(const simulation::HistoryRow& row) override {
+  void history(const record::HistoryRow& row) override {
     outcome_.rows.push_back(results::history_numbers(row));
   }
-  void contacts(const simulation::ContactFrame& frame) override { last_ = frame; }
-  void stage_end(int, const simulation::StageRecord& record) override {
+  void contacts(const record::ContactFrame& frame) override { last_ = frame; }
+  void stage_end(int, const record::StageRecord& record) override {
     outcome_.stage_rows[record.stage.name] = outcome_.rows.size();
   }
-  void end(const simulation::RunRecord& run) override {
+  void end(const record::RunRecord& run) override {
     outcome_.summary.clear();
     flatten(nlohmann::json::parse(results::summary_json(model_, run)), "", outcome_.summary);
     sum_forces();
@@ -74,7 +74,7 @@ class Memory final : public simulation::RunObserver {
   void sum_forces() {
     outcome_.forces.clear();
     std::map<std::pair<std::string, std::string>, Vec2> shear;
-    for (const simulation::ContactRecord& contact : last_.contacts) {
+    for (const record::ContactRecord& contact : last_.contacts) {
       std::pair pair(name(contact.block_a), name(contact.block_b));
       Vec2 force = contact.shear_force * perpendicular(contact.normal);
       if (pair.first > pair.second) {
@@ -91,8 +91,8 @@ class Memory final : public simulation::RunObserver {
   }
 
   Outcome& outcome_;
-  simulation::ModelRecord model_;
-  simulation::ContactFrame last_;
+  record::ModelRecord model_;
+  record::ContactFrame last_;
 };
 
 /// A folder for checkpoints that goes with its end.
@@ -116,10 +116,10 @@ class Scratch {
 };
 
 /// Interrupts a run after a number of steps.
-class Interrupter final : public simulation::RunObserver {
+class Interrupter final : public record::RunObserver {
  public:
   explicit Interrupter(long after) : after_(after) {}
-  void step(const simulation::StepRow& row) override { stop = row.step >= after_; }
+  void step(const record::StepRow& row) override { stop = row.step >= after_; }
   std::atomic<bool> stop = false;
 
  private:
@@ -141,9 +141,9 @@ void run_engine(const RunSpec& run, const simulation::RunSetup& setup, const std
     options.stop = stop;
     options.resume = std::filesystem::exists(scratch->path() / "checkpoint.bin");
   }
-  const simulation::RunRecord record = simulation::run(setup, options, memory);
+  const record::RunRecord record = simulation::run(setup, options, memory);
   if (record.interrupted) throw RunError("interrupted");
-  simulation::check_computation(record);
+  record::check_computation(record);
 }
 
 // Mean over realizations, and its standard error.

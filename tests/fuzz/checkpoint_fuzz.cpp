@@ -49,9 +49,9 @@ constexpr std::size_t header =
     2 * sizeof(std::uint64_t);  // format and fingerprint, which are looked at first
 
 /// Stops the run at the end of its first stage.
-struct StopsAfterFirst : simulation::RunObserver {
+struct StopsAfterFirst : record::RunObserver {
   std::atomic<bool> stop = false;
-  void stage_end(int, const simulation::StageRecord&) override { stop = true; }
+  void stage_end(int, const record::StageRecord&) override { stop = true; }
 };
 
 /// A run of two stages, and the checkpoint at the end of the first.
@@ -108,7 +108,7 @@ void try_bytes(std::string_view bytes) {
   std::string file = changed(fixed.checkpoint, bytes);
   sign(file);
   write(simulation::checkpoint_path(fixed.folder.path()), file);
-  simulation::RunObserver nobody;
+  record::RunObserver nobody;
   simulation::run(fixed.setup, fixed.options, nobody);
 }
 

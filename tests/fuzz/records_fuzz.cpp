@@ -11,7 +11,7 @@ void try_bytes(std::string_view bytes) {
   // The first letter says what the text is read as.
   switch (bytes.front()) {
     case 'm': {
-      simulation::ModelRecord model;
+      record::ModelRecord model;
       results::read_model_json(text, model);
       static_cast<void>(results::model_json(model));
       break;

@@ -92,6 +92,30 @@ def include_problems(root, modules):
                 yield f"{where}: includes {header}, which brings {heavy} along"
 
 
+NAMESPACE = re.compile(r"^namespace (?P<name>keyblock(?:::\w+)*) \{", re.MULTILINE)
+
+# Namespaces that are not called like their folder: words that every module uses, the folders that make a step together, and the
+# parts of what programs include (include/).
+SHARED_NAMESPACES = {
+    "api": "keyblock",
+    "core": "keyblock",
+    "geometry": "keyblock",
+    "model": "keyblock::dynamics",
+    "coupling": "keyblock::dynamics",
+    "solve": "keyblock::dynamics",
+}
+
+
+def namespace_problems(root, modules):
+    """A header opens the namespace of its folder, last; before it, it may declare names of others."""
+    for name in modules:
+        wanted = SHARED_NAMESPACES.get(name, f"keyblock::{name}")
+        for path in sorted((root / "src" / name).rglob("*.h")):
+            found = NAMESPACE.findall(path.read_text())
+            if found and found[-1] != wanted and not found[-1].startswith(f"{wanted}::"):
+                yield f"{path.relative_to(root)}: opens namespace {found[-1]}, not {wanted}"
+
+
 def page_problems(root, modules):
     page = root / "docs/architecture.md"
     text = page.read_text() if page.is_file() else ""
@@ -105,6 +129,7 @@ def problems(root):
     return [
         *declaration_problems(root, modules),
         *include_problems(root, modules),
+        *namespace_problems(root, modules),
         *page_problems(root, modules),
     ]
 
@@ -175,6 +200,12 @@ class Checker(unittest.TestCase):
     def test_json_without_checks(self):
         self.write("src/b/b.cpp", "#include <nlohmann/json.hpp>\n")
         self.assert_problem(r"src/b/b\.cpp: includes nlohmann/json\.hpp in place of core/checked_json\.h")
+
+    def test_namespace_of_another_folder(self):
+        self.write("src/b/b.h", "namespace keyblock::a {\nstruct Of;\n}\nnamespace keyblock::b {\n}\nnamespace keyblock::b::numbers {\n}\n")
+        self.assertEqual(problems(self.root), [])
+        self.write("src/b/b.h", "namespace keyblock::a {\n}\n")
+        self.assert_problem(r"src/b/b\.h: opens namespace keyblock::a, not keyblock::b")
 
     def test_page_without_a_module(self):
         self.write("docs/architecture.md", "`a/` `c/`")

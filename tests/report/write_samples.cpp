@@ -12,10 +12,10 @@ namespace {
 /// What results::read_run finds of a run that was killed.
 void forget_end(keyblock::results::RunData& data) {
   const double unknown = std::nan("");
-  keyblock::simulation::RunRecord& run = data.run;
-  keyblock::simulation::StageRecord& last = run.stages.back();
-  const keyblock::simulation::Damage known = last.damage;
-  for (const auto& field : keyblock::simulation::damage_fields) last.damage.*field.number = unknown;
+  keyblock::record::RunRecord& run = data.run;
+  keyblock::record::StageRecord& last = run.stages.back();
+  const keyblock::record::Damage known = last.damage;
+  for (const auto& field : keyblock::record::damage_fields) last.damage.*field.number = unknown;
   last.damage.fallen_area = known.fallen_area;
   last.damage.loosened_area = known.loosened_area;
   last.wall_time = last.worst_residual_ratio = unknown;
@@ -38,8 +38,8 @@ void move_block(keyblock::results::RunData& data, std::size_t block, float up) {
 
 /// Puts an anchor of 100 kN/m in with the second stage, to 80 % of that in the last frame; and the base of the model, without a limit.
 void add_elements(keyblock::results::RunData& data) {
-  using keyblock::simulation::ElementState;
-  keyblock::simulation::ModelRecord& model = data.model;
+  using keyblock::record::ElementState;
+  keyblock::record::ModelRecord& model = data.model;
   keyblock::Box box;
   for (const keyblock::Vec2 p : model.vertices) box.add(p);
   model.elements = {{"anchor <1>", "spring", 1e5, {2.0, 2.5}, {2.0, 4.5}, 0, 1},
@@ -147,13 +147,13 @@ int main(int argc, char** argv) {
   keyblock::report::write_report(stone, std::filesystem::path(argv[1]) / "fallen_stone");
   // The same, but one stone counts as fallen.
   for (std::size_t k = 2; k < stone.run.stages.size(); ++k) {
-    keyblock::simulation::StageRecord& stage = stone.run.stages[k];
+    keyblock::record::StageRecord& stage = stone.run.stages[k];
     const auto& block = stone.model.blocks[0];
     stage.fallen = {{0, block.area, 9.81 * block.density * block.area, std::nan("")}};
     stage.damage.fallen_blocks = 1;
     stage.damage.fallen_area = stage.damage.largest_fallen_area = block.area;
     stage.damage.fallen_weight = stage.damage.largest_fallen_weight = stage.fallen[0].weight;
-    stage.standing = keyblock::simulation::Standing::collapsed;
+    stage.standing = keyblock::record::Standing::collapsed;
   }
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "collapsed");
   keyblock::report::write_report(stone, std::filesystem::path(argv[1]) / "collapsed");

@@ -26,13 +26,14 @@ inline Scene hung_block() {
   scene.setup.springs = {hanger(3.0, 0.9, -1), hanger(3.0, 0.8, 0)};
   scene.setup.staged_supports = {"second"};
   scene.setup.time_step = 0.002;
-  Stage in_place = stage("hang", StageKind::settle), unload = stage("unload", StageKind::settle);
+  record::Stage in_place = stage("hang", record::StageKind::settle),
+                unload = stage("unload", record::StageKind::settle);
   in_place.tolerance = unload.tolerance = 1e-9;
-  Stage support = in_place;
+  record::Stage support = in_place;
   support.name = "support";
   support.install = {"second"};
   unload.excavate = {0};
-  scene.setup.stages = {in_place, support, unload, stage("wait", StageKind::rest, 0.1)};
+  scene.setup.stages = {in_place, support, unload, stage("wait", record::StageKind::rest, 0.1)};
   return scene;
 }
 

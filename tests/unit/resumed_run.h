@@ -8,7 +8,7 @@ namespace keyblock::simulation {
 
 /// A run that an observer with a flag `stop` interrupts, and that goes on from its checkpoint.
 template <typename Stopping>
-RunRecord resumed_run(const RunSetup& setup, Stopping& stopper) {
+record::RunRecord resumed_run(const RunSetup& setup, Stopping& stopper) {
   const FreshFolder folder;
   RunOptions options;
   options.directory = folder;
@@ -16,7 +16,7 @@ RunRecord resumed_run(const RunSetup& setup, Stopping& stopper) {
   EXPECT_TRUE(run(setup, options, stopper).interrupted);
   options.stop = nullptr;
   options.resume = true;
-  RunObserver nobody;
+  record::RunObserver nobody;
   return run(setup, options, nobody);
 }
 

@@ -40,7 +40,7 @@ struct Scene {
     setup.system.blocks.push_back(std::move(block));
     BlockProperties properties;
     properties.name = "b" + std::to_string(setup.properties.size());
-    properties.material = {density_, young_, 0.2, PlaneState::plane_stress};
+    properties.material = {density_, young_, 0.2, block::PlaneState::plane_stress};
     properties.fixed = fixed;
     properties.order = order;
     setup.properties.push_back(properties);
@@ -58,12 +58,12 @@ struct Scene {
   double young_, density_;
 };
 
-inline Stage stage(const char* name, StageKind kind, double duration = 0.0) {
-  Stage s;
+inline record::Stage stage(const char* name, record::StageKind kind, double duration = 0.0) {
+  record::Stage s;
   s.name = name;
   s.kind = kind;
-  if (kind == StageKind::shake) s.motion = 0;
-  if (kind == StageKind::rest) s.duration = duration;
+  if (kind == record::StageKind::shake) s.motion = 0;
+  if (kind == record::StageKind::rest) s.duration = duration;
   return s;
 }
 
@@ -74,18 +74,18 @@ inline void settle_bounds(dynamics::SolverOptions& options) {
 }
 
 /// Stops a run after a step.
-struct Stopper final : RunObserver {
+struct Stopper final : record::RunObserver {
   explicit Stopper(long after_step) : after(after_step) {}
-  void step(const StepRow& row) override { stop = row.step >= after; }
+  void step(const record::StepRow& row) override { stop = row.step >= after; }
 
   std::atomic<bool> stop = false;
   long after;
 };
 
-struct LastHistory final : RunObserver {
-  HistoryRow last;
+struct LastHistory final : record::RunObserver {
+  record::HistoryRow last;
   int rows = 0;
-  void history(const HistoryRow& row) override {
+  void history(const record::HistoryRow& row) override {
     last = row;
     ++rows;
   }

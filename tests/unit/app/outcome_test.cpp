@@ -6,9 +6,9 @@
 namespace keyblock::app {
 namespace {
 
-using simulation::RunRecord;
-using simulation::StageKind;
-using simulation::StageRecord;
+using record::RunRecord;
+using record::StageKind;
+using record::StageRecord;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -98,7 +98,7 @@ TEST(OutcomeText, SaysThatARestWasTooShort) {
 
 TEST(OutcomeText, SaysWhatFellAndFromWhere) {
   RunRecord run = settled_and_shaken();
-  simulation::Damage& damage = run.stages[1].damage;
+  record::Damage& damage = run.stages[1].damage;
   damage.fallen_weight = 91.2e3;
   damage.largest_block_pressure = 15.2e3;
   damage.largest_fallen_weight = 30.5e3;
@@ -116,17 +116,17 @@ TEST(OutcomeText, SaysWhatFellAndFromWhere) {
 TEST(OutcomeText, SaysWhetherItStands) {
   RunRecord run = settled_and_shaken();
   StageRecord& last = run.stages[1];
-  last.standing = simulation::Standing::collapsed;
+  last.standing = record::Standing::collapsed;
   last.damage.displacement_max = 1.5;
   last.damage.rotation_max = 178.2;
   EXPECT_THAT(
       outcome_text(run, 9),
       HasSubstr("\nat the end of \"first earthquake\" it has collapsed: 12 blocks have fallen; the middle of "
                 "a block has moved by up to 1.5 m, and a block turned by up to 178 degrees\n"));
-  last.standing = simulation::Standing::moves;
+  last.standing = record::Standing::moves;
   last.largest_speed = 0.25;
   EXPECT_THAT(outcome_text(run, 9), HasSubstr("it moves, at up to 0.25 m/s; the middle"));
-  last.standing = simulation::Standing::stands;
+  last.standing = record::Standing::stands;
   EXPECT_THAT(outcome_text(run, 9), HasSubstr("\" it stands; the middle"));
   last.damage.rotation_max = 1e-13;
   EXPECT_THAT(outcome_text(run, 9), HasSubstr("turned by up to 0 degrees"));
@@ -136,7 +136,7 @@ TEST(OutcomeText, NothingIsFilledWithoutAnOpening) {
   RunRecord run = settled_and_shaken();
   run.stages[1].damage.opening_filled_ratio = 0.125;
   EXPECT_THAT(outcome_text(run, 9), HasSubstr(" 12.5 "));
-  run.stages[1].standing = simulation::Standing::stands;
+  run.stages[1].standing = record::Standing::stands;
   EXPECT_THAT(outcome_text(run, 9), Not(HasSubstr(" 12.5 ")));
 }
 

@@ -10,9 +10,9 @@
 namespace keyblock::app {
 namespace {
 
-using simulation::Progress;
-using simulation::StageKind;
-using simulation::StageRecord;
+using record::Progress;
+using record::StageKind;
+using record::StageRecord;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;

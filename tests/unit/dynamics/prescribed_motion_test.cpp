@@ -87,13 +87,13 @@ TEST(PrescribedMotion, ResumedRunsEndInTheSameBits) {
   setup.properties[0].motion_x =
       table(3.0, [](double t) { return 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * t)); });
   setup.time_step = time_step;
-  Stage stage;
+  record::Stage stage;
   stage.name = "moved";
-  stage.kind = StageKind::rest;
+  stage.kind = record::StageKind::rest;
   stage.duration = 3.0;
   setup.stages.push_back(stage);
-  RunObserver nobody;
-  const RunRecord whole = run(setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(setup, {}, nobody);
 
   Stopper stopper(2500);
   EXPECT_EQ(resumed_run(setup, stopper).state_hash, whole.state_hash);

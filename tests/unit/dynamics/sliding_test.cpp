@@ -52,7 +52,8 @@ TEST(Bond, HoldsOnAnInclineWhatCoulombSaysForAnyStep) {
       scene.rectangle({0.0, 0.0}, 4.0, 0.5, 45.0);
       scene.setup.joints.standard.cohesion = cohesion;
       scene.setup.time_step = dt;
-      scene.setup.stages = {stage("settle", StageKind::settle), stage("rest", StageKind::rest, 0.1)};
+      scene.setup.stages = {stage("settle", record::StageKind::settle),
+                            stage("rest", record::StageKind::rest, 0.1)};
       scene.setup.histories.push_back({"block", "b1", {1.0, 1.5}});
       LastHistory observer;
       run(scene.setup, {}, observer);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 namespace {
 
 Stage stage(StageKind kind, std::vector<int> excavate = {}) {
@@ -38,4 +38,4 @@ TEST(LastBeforeShaking, IsNoneWhereNothingComesBeforeOrNothingShakes) {
 }
 
 }  // namespace
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

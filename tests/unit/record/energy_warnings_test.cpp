@@ -20,17 +20,17 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-RunRecord missing(double ratio) {
-  RunRecord run;
+record::RunRecord missing(double ratio) {
+  record::RunRecord run;
   run.energy.residual_ratio = ratio;
   return run;
 }
 
 std::string balance_failure_of(double ratio, bool interrupted = false) {
-  RunRecord run = missing(ratio);
+  record::RunRecord run = missing(ratio);
   run.interrupted = interrupted;
   try {
-    check_computation(run);
+    record::check_computation(run);
   } catch (const RunError& error) {
     return error.what();
   }
@@ -38,31 +38,31 @@ std::string balance_failure_of(double ratio, bool interrupted = false) {
 }
 
 TEST(EnergyWarnings, SayWhatTheBalanceMisses) {
-  EXPECT_THAT(energy_warnings(missing(0.0)), IsEmpty());
-  EXPECT_THAT(energy_warnings(missing(0.01)), IsEmpty());
-  EXPECT_THAT(energy_warnings(missing(0.0123)),
+  EXPECT_THAT(record::energy_warnings(missing(0.0)), IsEmpty());
+  EXPECT_THAT(record::energy_warnings(missing(0.01)), IsEmpty());
+  EXPECT_THAT(record::energy_warnings(missing(0.0123)),
               ElementsAre(AllOf(HasSubstr("misses 1.23 % of its largest term, more than 1 %"),
                                 HasSubstr("compare with a run with a smaller time.step"))));
-  EXPECT_THAT(energy_warnings(missing(0.05)), ElementsAre(HasSubstr("more than 1 %")));
-  EXPECT_THAT(energy_warnings(missing(2.22)),
+  EXPECT_THAT(record::energy_warnings(missing(0.05)), ElementsAre(HasSubstr("more than 1 %")));
+  EXPECT_THAT(record::energy_warnings(missing(2.22)),
               ElementsAre(AllOf(HasSubstr("misses 222 % of its largest term, more than 5 %"),
                                 HasSubstr("the results are not to be used"))));
 }
 
 TEST(EnergyWarnings, SayWhatTheTimeIntegrationHasMade) {
-  RunRecord run = missing(1e-6);
+  record::RunRecord run = missing(1e-6);
   run.made.ratio = 0.1;
-  EXPECT_THAT(energy_warnings(run), IsEmpty());
+  EXPECT_THAT(record::energy_warnings(run), IsEmpty());
   run.made.ratio = 1.37;
   run.made.time = 2.5;
-  EXPECT_THAT(energy_warnings(run),
+  EXPECT_THAT(record::energy_warnings(run),
               ElementsAre(HasSubstr(
                   "has made energy, 137 % of the largest term that is accounted for at 2.5 s: compare")));
   run.made.most = 0.6;
   run.made.largest = 1.0;
-  EXPECT_THAT(energy_warnings(run), ElementsAre(HasSubstr("the results are not to be used")));
+  EXPECT_THAT(record::energy_warnings(run), ElementsAre(HasSubstr("the results are not to be used")));
   run.energy.residual_ratio = 0.5;
-  EXPECT_EQ(energy_warnings(run).size(), 2U);
+  EXPECT_EQ(record::energy_warnings(run).size(), 2U);
 }
 
 TEST(EnergyWarnings, ARunThatMissesTooMuchHasFailed) {
@@ -101,10 +101,10 @@ TEST(EnergyAudit, WhatNobodySeesIsNoResidual) {
 
 TEST(EnergyAudit, EnergyThatIsMadeIsMeasuredByAllOtherTerms) {
   Simulator s = one_block({0.0, -g});
-  Energy energy;
+  record::Energy energy;
   energy.friction = 20.0;
   energy.kinetic = 10.0;
-  MadeEnergy made;
+  record::MadeEnergy made;
   energy.numerical = 30.0;
   watch_made(s.model, energy, 0.5, made);
   EXPECT_EQ(made.ratio, 0.0);
@@ -130,7 +130,7 @@ RunSetup small_bounce(double radius) {
   scene.rectangle({-5.0, -1.0}, 10.0, 1.0, 0.0, true);
   scene.rectangle({0.0, 0.003}, 1.0, 1.0);
   scene.setup.time_step = 0.004;
-  scene.setup.stages = {stage("falls", StageKind::rest, 2.0)};
+  scene.setup.stages = {stage("falls", record::StageKind::rest, 2.0)};
   scene.setup.solver.integrator = dynamics::TimeIntegration::generalized_alpha;
   scene.setup.solver.spectral_radius = radius;
   return scene.setup;
@@ -138,25 +138,26 @@ RunSetup small_bounce(double radius) {
 
 // With a radius of 0.3 it comes to rest in the end: the sum of what was lost and made is a loss.
 TEST(EnergyAudit, EnergyMadeInSmallBounces) {
-  RunObserver nobody;
-  const RunRecord low = run(small_bounce(0.0), {}, nobody), high = run(small_bounce(0.3), {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord low = run(small_bounce(0.0), {}, nobody), high = run(small_bounce(0.3), {}, nobody);
   EXPECT_LT(low.made.ratio, 1e-9);
   EXPECT_GT(high.energy.numerical, 0.0);
-  EXPECT_GT(high.made.share(), failed_made);
+  EXPECT_GT(high.made.share(), record::failed_made);
   EXPECT_GT(high.made.time, 0.02);
-  EXPECT_THAT(failed_balances(high), ElementsAre(HasSubstr("has made energy")));
+  EXPECT_THAT(record::failed_balances(high), ElementsAre(HasSubstr("has made energy")));
 }
 
 // From the end of the first stage on, before its worst moment and after it.
 TEST(EnergyAudit, AResumedRunHasTheSameWorstMoment) {
   for (const double first : {0.6, 1.4}) {
     RunSetup setup = small_bounce(0.3);
-    setup.stages = {stage("falls", StageKind::rest, first), stage("bounces", StageKind::rest, 2.0 - first)};
-    RunObserver nobody;
-    const RunRecord whole = run(setup, {}, nobody);
+    setup.stages = {stage("falls", record::StageKind::rest, first),
+                    stage("bounces", record::StageKind::rest, 2.0 - first)};
+    record::RunObserver nobody;
+    const record::RunRecord whole = run(setup, {}, nobody);
     EXPECT_EQ(whole.made.time > first, first < 1.0) << whole.made.time;
     Stopper stopper(std::lround(first / setup.time_step) + 10);
-    const RunRecord resumed = resumed_run(setup, stopper);
+    const record::RunRecord resumed = resumed_run(setup, stopper);
     EXPECT_EQ(resumed.made.ratio, whole.made.ratio);
     EXPECT_EQ(resumed.made.time, whole.made.time);
     EXPECT_EQ(resumed.made.highest, whole.made.highest);
@@ -166,9 +167,9 @@ TEST(EnergyAudit, AResumedRunHasTheSameWorstMoment) {
 
 TEST(EnergyAudit, RoundingMakesNoEnergy) {
   Simulator s = one_block({0.0, -g});
-  Energy energy;
+  record::Energy energy;
   energy.numerical = -1e-15;
-  MadeEnergy made;
+  record::MadeEnergy made;
   watch_made(s.model, energy, 1.0, made);
   EXPECT_LT(made.ratio, 1e-9);
 }

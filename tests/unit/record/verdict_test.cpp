@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace keyblock::simulation {
+namespace keyblock::record {
 namespace {
 
 StageRecord settled() {
@@ -49,4 +49,4 @@ TEST(Verdict, SaysWhenTheOthersAreNotInEquilibrium) {
 }
 
 }  // namespace
-}  // namespace keyblock::simulation
+}  // namespace keyblock::record

@@ -6,9 +6,9 @@
 
 namespace keyblock::made_up {
 
-simulation::Damage synthetic_damage(std::size_t stage, const std::vector<simulation::FallenBlock>& fallen,
-                                    double loosened, Vec2 opening) {
-  simulation::Damage damage;
+record::Damage synthetic_damage(std::size_t stage, const std::vector<record::FallenBlock>& fallen,
+                                double loosened, Vec2 opening) {
+  record::Damage damage;
   if (stage >= 1) {
     damage.slip_max = damage.slip_max_ever = 4.0e-4;
     damage.slip_mean = 2.1e-5;
@@ -17,12 +17,12 @@ simulation::Damage synthetic_damage(std::size_t stage, const std::vector<simulat
   }
   if (stage < 2) return damage;
   damage.loosened_area = loosened;
-  for (const simulation::FallenBlock& block : fallen) {
+  for (const record::FallenBlock& block : fallen) {
     ++damage.fallen_blocks;
     damage.fallen_area += block.area;
     damage.fallen_weight += block.weight;
   }
-  simulation::set_extremes(fallen, damage);
+  record::set_extremes(fallen, damage);
   damage.largest_block_pressure = damage.largest_fallen_weight / std::sqrt(damage.largest_fallen_area);
   damage.displacement_max = 1.9;
   damage.rotation_max = 38.0;

@@ -12,9 +12,9 @@ namespace {
 
 using cutting::EdgeKind;
 using cutting::EdgeLabel;
-using simulation::BlockStatus;
-using simulation::ContactState;
-using simulation::StageKind;
+using record::BlockStatus;
+using record::ContactState;
+using record::StageKind;
 
 constexpr double brick_width = 1.0, brick_height = 0.6, gravity = 9.81;
 
@@ -60,7 +60,7 @@ class Wall {
 
  private:
   void add_model() {
-    simulation::ModelRecord& model = run_.model;
+    record::ModelRecord& model = run_.model;
     model.title = "Brick wall <synthetic> & shaken";
     model.version = "0.1.0";
     model.seed = 18446744073709551615ULL;
@@ -106,7 +106,7 @@ class Wall {
   }
 
   void add_brick(const Box& box) {
-    simulation::ModelRecord::Block block;
+    record::ModelRecord::Block block;
     const Vec2 centre = 0.5 * (box.min + box.max);
     block.centroid = centre;
     block.area = box.size().x * box.size().y;
@@ -146,7 +146,7 @@ class Wall {
   }
 
   void add_frame_block(const char* name, const Box& box) {
-    simulation::ModelRecord::Block block;
+    record::ModelRecord::Block block;
     block.name = name;
     block.fixed = true;
     block.area = box.size().x * box.size().y;
@@ -158,8 +158,8 @@ class Wall {
     add_ring(block, box, 1);
   }
 
-  void add_ring(simulation::ModelRecord::Block& block, const Box& box, int pieces) {
-    simulation::ModelRecord& model = run_.model;
+  void add_ring(record::ModelRecord::Block& block, const Box& box, int pieces) {
+    record::ModelRecord& model = run_.model;
     const Vec2 corners[] = {box.min, {box.max.x, box.min.y}, box.max, {box.min.x, box.max.y}};
     block.ring_start = {static_cast<int>(model.vertices.size())};
     for (int side = 0; side < 4; ++side) {
@@ -182,7 +182,7 @@ class Wall {
   /// Share of the settling that is done: 1 once `stage` has ended.
   [[nodiscard]] Vec2 displacement(std::size_t v, int stage, double share, double time) const {
     const auto b = static_cast<std::size_t>(block_of_[v]);
-    const simulation::ModelRecord::Block& block = run_.model.blocks[b];
+    const record::ModelRecord::Block& block = run_.model.blocks[b];
     if (block.fixed) return {};
     const Vec2 x = run_.model.vertices[v];
     const double settled = stage == 0 ? share : 1.0;
@@ -225,7 +225,7 @@ class Wall {
     const bool cut = options_.interrupted && stage + 1 == static_cast<int>(plan_.size());
     for (int k = 0; k < count; ++k) {
       const double share = (cut ? 0.6 : 1.0) * k / (count - 1);
-      simulation::Frame frame;
+      record::Frame frame;
       frame.stage = stage;
       frame.time = plan.start + share * plan.duration;
       frame.step = step_of(stage, share);
@@ -254,8 +254,8 @@ class Wall {
             static_cast<float>(-4000.0 * beside * (c.x - 0.5 * width_))};
   }
 
-  void add_contacts(const simulation::Frame& frame) {
-    simulation::ContactFrame snapshot{frame.time, frame.stage, {}, frame.step};
+  void add_contacts(const record::Frame& frame) {
+    record::ContactFrame snapshot{frame.time, frame.stage, {}, frame.step};
     for (std::size_t a = 0; a < boxes_.size(); ++a) {
       if (run_.model.blocks[a].fixed || frame.status[a] == BlockStatus::excavated) continue;
       for (std::size_t b = 0; b < boxes_.size(); ++b) {
@@ -270,12 +270,12 @@ class Wall {
     run_.contacts.push_back(std::move(snapshot));
   }
 
-  [[nodiscard]] simulation::ContactRecord contact(std::size_t a, std::size_t b, bool right, double overlap,
-                                                  const simulation::Frame& frame) const {
+  [[nodiscard]] record::ContactRecord contact(std::size_t a, std::size_t b, bool right, double overlap,
+                                              const record::Frame& frame) const {
     const double edge =
         right ? std::min(boxes_[a].max.x, boxes_[b].max.x) : std::max(boxes_[a].min.x, boxes_[b].min.x);
     const auto first = static_cast<std::size_t>(run_.model.blocks[b].ring_start[0]);
-    simulation::ContactRecord record;
+    record::ContactRecord record;
     record.block_a = static_cast<int>(a);
     record.block_b = static_cast<int>(b);
     record.position = Vec2{edge, boxes_[b].max.y} +
@@ -304,11 +304,11 @@ class Wall {
   }
 
   void add_stages() {
-    simulation::RunRecord& record = run_.run;
+    record::RunRecord& record = run_.run;
     for (std::size_t k = 0; k < plan_.size(); ++k) {
       const StagePlan& plan = plan_[k];
       const bool cut = options_.interrupted && k + 1 == plan_.size();
-      simulation::StageRecord stage;
+      record::StageRecord stage;
       stage.stage.name = plan.name;
       stage.stage.kind = plan.kind;
       if (k == 1 && options_.excavation) stage.stage.excavate = {0};
@@ -331,7 +331,7 @@ class Wall {
         stage.damage.largest_block_pressure = stage.damage.fallen_depth = std::nan("");
         stage.damage.rotation_max = 0.03 * static_cast<double>(k);
         stage.damage.hinges = k < 2 ? 0 : 4;
-        stage.standing = simulation::Standing::stands;
+        stage.standing = record::Standing::stands;
       }
       if (plan.kind == StageKind::shake) add_motion(stage);
       record.steps += stage.steps;
@@ -347,18 +347,18 @@ class Wall {
     record.energy.residual_ratio = 0.0021;
   }
 
-  [[nodiscard]] std::vector<simulation::FallenBlock> fallen_at(std::size_t stage) const {
-    std::vector<simulation::FallenBlock> fallen;
+  [[nodiscard]] std::vector<record::FallenBlock> fallen_at(std::size_t stage) const {
+    std::vector<record::FallenBlock> fallen;
     for (std::size_t b = 0; stage >= 2 && b < boxes_.size(); ++b) {
       if (status(b, 2, options_.shake_duration) != BlockStatus::fallen) continue;
       const auto& block = run_.model.blocks[b];
       fallen.push_back({static_cast<int>(b), block.area, block.area * block.density * gravity,
-                        boxes_[b].max.y - opening_.max.y, simulation::WallPart::crown});
+                        boxes_[b].max.y - opening_.max.y, record::WallPart::crown});
     }
     return fallen;
   }
 
-  [[nodiscard]] simulation::Damage damage_at(std::size_t stage) const {
+  [[nodiscard]] record::Damage damage_at(std::size_t stage) const {
     double loosened = 0.0;
     for (std::size_t b = 0; b < boxes_.size(); ++b) {
       if (status(b, 2, options_.shake_duration) == BlockStatus::loosened)
@@ -367,7 +367,7 @@ class Wall {
     return synthetic_damage(stage, fallen_at(stage), loosened, opening_.size());
   }
 
-  void add_motion(simulation::StageRecord& stage) const {
+  void add_motion(record::StageRecord& stage) const {
     const int n = 1000;
     for (int i = 0; i <= n; ++i) {
       const double t = options_.shake_duration * i / n;
@@ -390,7 +390,7 @@ class Wall {
       const long steps = step_of(static_cast<int>(k), cut ? 0.6 : 1.0) - step_of(static_cast<int>(k), 0.0);
       for (long i = 0; i < steps; i += 5) {
         const double share = static_cast<double>(i) / static_cast<double>(steps);
-        simulation::StepRow row;
+        record::StepRow row;
         row.stage = static_cast<int>(k);
         row.step = step_of(static_cast<int>(k), 0.0) + i;
         row.time = plan_[k].start + share * plan_[k].duration;
@@ -413,7 +413,7 @@ class Wall {
                       .numerical = 0.1 * friction,
                       .residual_ratio = 0.001 * share};
         run_.steps.push_back(row);
-        simulation::HistoryRow history;
+        record::HistoryRow history;
         history.time = row.time;
         history.step = row.step;
         for (const double height : {1.0, 0.4}) {

@@ -39,28 +39,28 @@ std::string last_part(const std::string& name) {
 
 TEST(DescribedOnce, FieldsOfStagesAreInTheGuideAndInTheTypesOfThePage) {
   const std::string guide = source("docs/guide/results.md"), types = source("viewer/src/data.ts");
-  const simulation::StageRecord stage;
-  simulation::visit_stage(stage, [&](const simulation::StageField& field, const auto&) {
+  const record::StageRecord stage;
+  record::visit_stage(stage, [&](const record::StageField& field, const auto&) {
     EXPECT_STRNE(field.meaning, "") << field.name;
-    if (field.file == simulation::RecordFile::summary) {
+    if (field.file == record::RecordFile::summary) {
       const std::string name = std::string("stages[].") + field.name;
       const bool is_told = has(guide, "`" + name) || has(guide, "`." + last_part(field.name) + "`");
       EXPECT_TRUE(is_told) << "docs/guide/results.md has no " << name;
     }
     const bool is_typed = has(types, " " + last_part(field.name) + ": ");
-    EXPECT_TRUE(is_typed || field.file == simulation::RecordFile::result)
+    EXPECT_TRUE(is_typed || field.file == record::RecordFile::result)
         << "viewer/src/data.ts has no " << field.name;
   });
 }
 
 std::string table_of_stages() {
   std::string table = "| field | unit | what | also in |\n|---|---|---|---|\n";
-  const simulation::StageRecord stage;
-  simulation::visit_stage(stage, [&](const simulation::StageField& field, const auto&) {
+  const record::StageRecord stage;
+  record::visit_stage(stage, [&](const record::StageField& field, const auto&) {
     std::string row = "| `" + std::string(field.name) + "`";
-    const char* also = field.file == simulation::RecordFile::summary ? "summary.json, report"
-                       : field.file == simulation::RecordFile::page  ? "report"
-                                                                     : "";
+    const char* also = field.file == record::RecordFile::summary ? "summary.json, report"
+                       : field.file == record::RecordFile::page  ? "report"
+                                                                 : "";
     for (const char* cell : {field.unit, field.meaning, also}) row += std::string(" | ") + cell;
     table += row + " |\n";
   });
@@ -85,11 +85,11 @@ TEST(DescribedOnce, ThePageOfTheResultFileHasTheFieldsOfStages) {
 TEST(DescribedOnce, FieldsOfRunsAreInTheGuideAndReadByEarlierNames) {
   const std::string guide = source("docs/guide/results.md");
   SampleRun sample;
-  const simulation::RunRecord run = sample.run();
+  const record::RunRecord run = sample.run();
   ordered_json written = ordered_json::parse(run_json(run));
-  simulation::visit_run(run, [&](const simulation::RunField& field, const auto&) {
+  record::visit_run(run, [&](const record::RunField& field, const auto&) {
     const bool is_told = has(guide, "`" + std::string(field.name));
-    EXPECT_TRUE(is_told || field.file != simulation::RecordFile::summary)
+    EXPECT_TRUE(is_told || field.file != record::RecordFile::summary)
         << "docs/guide/results.md has no " << field.name;
     if (field.earlier == nullptr) return;
     written[field.earlier] = written.at(field.name);
@@ -101,13 +101,13 @@ TEST(DescribedOnce, FieldsOfRunsAreInTheGuideAndReadByEarlierNames) {
 
 // All bytes of a record are in the table but for what lies between members of different sizes, and what the scenario says of a stage.
 TEST(DescribedOnce, NoFieldOfStagesIsMissing) {
-  const simulation::StageRecord stage;
+  const record::StageRecord stage;
   const auto place = [&](const auto& value) {
     return static_cast<std::size_t>(reinterpret_cast<const char*>(&value) -
                                     reinterpret_cast<const char*>(&stage));
   };
   std::map<std::size_t, std::size_t> ends{{place(stage.stage), place(stage.stage) + sizeof(stage.stage)}};
-  simulation::visit_stage(stage, [&](const simulation::StageField&, const auto& value) {
+  record::visit_stage(stage, [&](const record::StageField&, const auto& value) {
     if (place(value) >= ends.begin()->second) ends[place(value)] = place(value) + sizeof(value);
   });
   ends[sizeof(stage)] = sizeof(stage);
@@ -120,7 +120,7 @@ TEST(DescribedOnce, NoFieldOfStagesIsMissing) {
 
 TEST(DescribedOnce, NumbersOfContactsAreOnThePageOfTheResultFile) {
   const std::string page = source("docs/result-file.md");
-  for (const simulation::ContactField& field : simulation::contact_fields) {
+  for (const record::ContactField& field : record::contact_fields) {
     std::size_t count = 0;  // result.h5, contacts.csv, contacts_N.vtp
     for (std::size_t at = page.find("`" + std::string(field.name) + "`"); at != std::string::npos;
          at = page.find("`" + std::string(field.name) + "`", at + 1))
@@ -133,10 +133,10 @@ TEST(DescribedOnce, NumbersOfContactsAreOnThePageOfTheResultFile) {
 // Development versions before the table, and version 0.1, had other names.
 TEST(DescribedOnce, StagesByTheNamesOfEarlierVersionsAreRead) {
   SampleRun sample;
-  const simulation::StageRecord stage = sample.stage(0);
+  const record::StageRecord stage = sample.stage(0);
   ordered_json written = ordered_json::parse(stage_json(0, stage, true));
   int renamed = 0;
-  simulation::visit_stage(stage, [&](const simulation::StageField& field, const auto&) {
+  record::visit_stage(stage, [&](const record::StageField& field, const auto&) {
     if (field.earlier == nullptr) return;
     const std::string name = field.name;
     ordered_json& group = has(name, ".") ? written[name.substr(0, name.find('.'))] : written;

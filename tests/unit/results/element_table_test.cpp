@@ -41,7 +41,7 @@ TEST(ElementTable, HistoriesOfElementsAloneAreWritten) {
   sample.model.history_names.clear();
   ResultWriter writer(folder);
   writer.begin(sample.model);
-  simulation::HistoryRow row = sample.history(7);
+  record::HistoryRow row = sample.history(7);
   row.points.clear();
   writer.history(row);
   writer.end(sample.run());

@@ -8,8 +8,8 @@
 namespace keyblock::results {
 namespace {
 
-std::vector<simulation::ElementRecord> two() {
-  simulation::ElementRecord bolt, support;
+std::vector<record::ElementRecord> two() {
+  record::ElementRecord bolt, support;
   bolt.name = "bolt, 1";
   bolt.kind = "spring";
   bolt.peak_stage = "shaking";

@@ -31,12 +31,12 @@ using testing::HasSubstr;
 RunData small_motions() {
   SampleRun sample;
   RunData data = sample.expected();
-  for (simulation::Frame& frame : data.frames) {
+  for (record::Frame& frame : data.frames) {
     for (std::size_t k = 0; k < frame.displacement.size(); ++k) {
       frame.displacement[k] = {0.01F * static_cast<float>(frame.step), -0.25F};
     }
-    frame.status = {simulation::BlockStatus::in_place, simulation::BlockStatus::fallen,
-                    frame.step < 15 ? simulation::BlockStatus::loosened : simulation::BlockStatus::excavated};
+    frame.status = {record::BlockStatus::in_place, record::BlockStatus::fallen,
+                    frame.step < 15 ? record::BlockStatus::loosened : record::BlockStatus::excavated};
   }
   return data;
 }
@@ -108,10 +108,10 @@ TEST(Export, Csv) {
 
 TEST(Export, HistoriesOfExcavatedRockAreEmptyCells) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  simulation::HistoryRow row;
+  record::HistoryRow row;
   row.time = 0.5;
   row.points = {{none, none, none, none, none, none, none}, {1, 2, 3, 4, 5, 6, 7, 8, 9}};
-  simulation::ModelRecord model;
+  record::ModelRecord model;
   model.history_names = {"a", "b"};
   EXPECT_THAT(histories_csv(model, {row}), testing::EndsWith("\n0.5,,,,,,,,,,1,2,3,4,5,6,7,8,9\n"));
 }
@@ -222,10 +222,10 @@ TEST(Export, VtkSeriesHaveTheSameTimeForTheSameStep) {
   data.contacts.resize(2, data.contacts.front());
   const std::pair<int, long> frames[] = {{0, 0}, {0, 10}, {0, 20}, {1, 20}, {1, 35}};
   for (std::size_t k = 0; k < 5; ++k) std::tie(data.frames[k].stage, data.frames[k].step) = frames[k];
-  for (simulation::Frame& frame : data.frames) frame.time = 0.0;
+  for (record::Frame& frame : data.frames) frame.time = 0.0;
   data.contacts[0].stage = 0, data.contacts[0].step = 20;
   data.contacts[1].stage = 1, data.contacts[1].step = 35;
-  for (simulation::ContactFrame& frame : data.contacts) frame.time = 0.0;
+  for (record::ContactFrame& frame : data.contacts) frame.time = 0.0;
   const auto files = export_run(data, folder, ExportFormat::vtk);
   const std::vector<double> blocks = series_times(files[0]);
   ASSERT_EQ(blocks.size(), 5U);
@@ -257,7 +257,7 @@ TEST(Export, VtkFilesAreReadByVtk) {
   const FreshFolder folder;
   RunData data = small_motions();
   // At the right upper corner of block 1, where the joint begins that belongs to it.
-  simulation::ContactRecord& corner = data.contacts.back().contacts[0];
+  record::ContactRecord& corner = data.contacts.back().contacts[0];
   corner.block_b = 1;
   corner.position = {7.3, 6.75};
   corner.normal = {0.0, 1.0};

@@ -5,13 +5,13 @@
 namespace keyblock::results {
 namespace {
 
-using simulation::ContactRecord;
+using record::ContactRecord;
 
 /// Block 0, a square 0…4 with its top edge in two pieces: vertices 0 (0,0), 1 (4,0), 2 (4,4), 3 (3,4), 4 (0,4).
 /// Block 1, a diamond that stands on it with its lowest corner, vertex 5, at (1.5,4).
 /// Block 2, a box on it that begins at vertex 9, (2,4), and extends to the right.
-simulation::ModelRecord square() {
-  simulation::ModelRecord model;
+record::ModelRecord square() {
+  record::ModelRecord model;
   model.vertices = {{0, 0},   {4, 0}, {4, 4}, {3, 4}, {0, 4}, {1.5, 4}, {2, 5},
                     {1.5, 6}, {1, 5}, {2, 4}, {6, 4}, {6, 5}, {2, 5}};
   model.edge_label.assign(model.vertices.size(), {cutting::EdgeKind::joint_set, 0});
@@ -22,7 +22,7 @@ simulation::ModelRecord square() {
   return model;
 }
 
-std::vector<JointPiece> located(const simulation::ModelRecord& model, ContactRecord contact,
+std::vector<JointPiece> located(const record::ModelRecord& model, ContactRecord contact,
                                 std::array<float, 2> moved = {0.0F, 0.0F}) {
   const std::vector<std::array<float, 2>> displacement(model.vertices.size(), moved);
   std::vector<JointPiece> pieces;
@@ -70,7 +70,7 @@ TEST(JointLocator, ShiftsTheLengthInwardsAtACornerAndGoesOverDisplayVertices) {
 }
 
 TEST(JointLocator, ReachIsMeasuredFromTheContactAlongTheRing) {
-  const simulation::ModelRecord model = square();
+  const record::ModelRecord model = square();
   const JointLocator locator(model);
   const std::vector<std::array<float, 2>> still(model.vertices.size());
   const auto expect_reach = [&](const ContactRecord& contact, double from, double to) {
@@ -110,7 +110,7 @@ TEST(JointLocator, FollowsTheDisplacement) {
 }
 
 TEST(JointLocator, EdgesEndWhereTheLabelChanges) {
-  simulation::ModelRecord model = square();
+  record::ModelRecord model = square();
   model.edge_label[3] = {cutting::EdgeKind::joint_set, 1};
   const auto pieces = located(model, on_top(3.2, 2.0));
   ASSERT_EQ(pieces.size(), 1U);

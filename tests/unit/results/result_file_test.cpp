@@ -70,7 +70,7 @@ TEST(ResultFile, ARunHasEndedWhenAllIsWritten) {
   EXPECT_FALSE(has_ended(folder));
   std::filesystem::remove(folder / "summary.json");
   EXPECT_FALSE(has_ended(folder));
-  simulation::RunRecord part = sample.run();
+  record::RunRecord part = sample.run();
   part.interrupted = true;
   {
     ResultWriter writer(folder);
@@ -84,7 +84,7 @@ TEST(ResultFile, FilesOfEarlierVersionsDoNotSayWhereTheLargestOverlapIs) {
   SampleRun sample;
   auto written = nlohmann::ordered_json::parse(run_json(sample.run()));
   for (const char* name : {"max_overlap_at", "contact_checks"}) ASSERT_EQ(written.erase(name), 1U);
-  const simulation::RunRecord run = read_run_json(written.dump());
+  const record::RunRecord run = read_run_json(written.dump());
   EXPECT_EQ(run.max_overlap.depth, sample.run().max_overlap.depth);
   EXPECT_EQ(run.max_overlap.block_a, -1);
 }
@@ -104,11 +104,11 @@ TEST(ResultFile, ARunWithoutContactsHistoriesOrFrames) {
   SampleRun sample;
   sample.model.history_names.clear();
   sample.model.element_histories.clear();
-  simulation::RunRecord run = sample.run();
+  record::RunRecord run = sample.run();
   {
     ResultWriter writer(folder);
     writer.begin(sample.model);
-    simulation::HistoryRow row;
+    record::HistoryRow row;
     row.step = 4;
     writer.history(row);
     writer.end(run);
@@ -202,7 +202,7 @@ TEST(ResultFile, OfAKilledRunWhatIsNotKnownIsNoNumber) {
   EXPECT_TRUE(std::isnan(data.run.max_overlap.depth));
   EXPECT_TRUE(std::isnan(data.run.max_area_change));
   EXPECT_EQ(data.run.energy.residual_ratio, sample.step_row(1, 23).energy.residual_ratio);
-  const simulation::StageRecord& last = data.run.stages.at(1);
+  const record::StageRecord& last = data.run.stages.at(1);
   EXPECT_TRUE(std::isnan(last.wall_time));
   // In its last frame, of step 20, block 1 is loosened and block 2 has fallen.
   EXPECT_EQ(last.damage.fallen_blocks, 1);
@@ -403,7 +403,7 @@ TEST(ResultFile, PlacesThatAreNotThereAreRefused) {
     }
     EXPECT_THAT(error_of(folder), HasSubstr(name));
   };
-  using Model = simulation::ModelRecord;
+  using Model = record::ModelRecord;
   for (const std::vector<int>& start : {std::vector<int>{3, 1, 11}, {3, 5, 11}, {-3, 7, 11}, {3, 7, 15}})
     error_with([&](Model& model) { model.blocks[1].ring_start = start; }, "model/ring_start");
   error_with([](Model& model) { model.blocks[1].excavations = {2}; }, "model/excavation");
@@ -423,7 +423,7 @@ TEST(ResultFile, FramesOfAnotherModelAreRefused) {
   SampleRun sample;
   ResultWriter writer(folder);
   writer.begin(sample.model);
-  simulation::Frame frame = sample.frame(0, 1);
+  record::Frame frame = sample.frame(0, 1);
   frame.stress.pop_back();
   EXPECT_THROW(writer.frame(frame), std::invalid_argument);
 }

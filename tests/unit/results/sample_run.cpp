@@ -31,7 +31,7 @@ bool same(Vec2 a, Vec2 b) {
   return same(a.x, b.x) && same(a.y, b.y);
 }
 
-void expect_equal(const simulation::ModelRecord& a, const simulation::ModelRecord& b) {
+void expect_equal(const record::ModelRecord& a, const record::ModelRecord& b) {
   EXPECT_EQ(a.title, b.title);
   EXPECT_EQ(a.version, b.version);
   EXPECT_EQ(a.seed, b.seed);
@@ -83,15 +83,15 @@ void expect_equal(const simulation::ModelRecord& a, const simulation::ModelRecor
   EXPECT_EQ(a.cutting.slivers_left, b.cutting.slivers_left);
 }
 
-void expect_equal(const simulation::Energy& a, const simulation::Energy& b) {
-  using E = simulation::Energy;
+void expect_equal(const record::Energy& a, const record::Energy& b) {
+  using E = record::Energy;
   for (const auto member : {&E::kinetic, &E::strain, &E::gravity, &E::contact, &E::friction, &E::damping,
                             &E::input, &E::numerical, &E::residual_ratio}) {
     EXPECT_TRUE(same(a.*member, b.*member));
   }
 }
 
-void expect_equal(const simulation::Frame& a, const simulation::Frame& b) {
+void expect_equal(const record::Frame& a, const record::Frame& b) {
   EXPECT_TRUE(same(a.time, b.time));
   EXPECT_EQ(a.stage, b.stage);
   EXPECT_EQ(a.step, b.step);
@@ -118,7 +118,7 @@ void expect_equal(const simulation::Frame& a, const simulation::Frame& b) {
   }
 }
 
-void expect_equal(const simulation::ContactFrame& a, const simulation::ContactFrame& b) {
+void expect_equal(const record::ContactFrame& a, const record::ContactFrame& b) {
   EXPECT_TRUE(same(a.time, b.time));
   EXPECT_EQ(a.stage, b.stage);
   EXPECT_EQ(a.step, b.step);
@@ -136,7 +136,7 @@ void expect_equal(const simulation::ContactFrame& a, const simulation::ContactFr
   }
 }
 
-void expect_equal(const simulation::HistoryRow& a, const simulation::HistoryRow& b) {
+void expect_equal(const record::HistoryRow& a, const record::HistoryRow& b) {
   EXPECT_TRUE(same(a.time, b.time));
   EXPECT_EQ(a.step, b.step);
   ASSERT_EQ(a.points.size(), b.points.size());
@@ -153,7 +153,7 @@ void expect_equal(const simulation::HistoryRow& a, const simulation::HistoryRow&
   }
 }
 
-void expect_equal(const simulation::StepRow& a, const simulation::StepRow& b) {
+void expect_equal(const record::StepRow& a, const record::StepRow& b) {
   EXPECT_TRUE(same(a.time, b.time) && same(a.step_size, b.step_size));
   EXPECT_EQ(a.step, b.step);
   EXPECT_EQ(a.stage, b.stage);
@@ -163,7 +163,7 @@ void expect_equal(const simulation::StepRow& a, const simulation::StepRow& b) {
   expect_equal(a.energy, b.energy);
 }
 
-void expect_equal(const simulation::StageRecord& a, const simulation::StageRecord& b) {
+void expect_equal(const record::StageRecord& a, const record::StageRecord& b) {
   EXPECT_EQ(a.stage.name, b.stage.name);
   EXPECT_EQ(a.stage.kind, b.stage.kind);
   EXPECT_EQ(a.stage.excavate, b.stage.excavate);
@@ -187,14 +187,14 @@ void expect_equal(const simulation::StageRecord& a, const simulation::StageRecor
   }
   ASSERT_EQ(a.release.size(), b.release.size());
   for (std::size_t k = 0; k < a.release.size(); ++k) {
-    const simulation::ReleasePoint &p = a.release[k], &q = b.release[k];
+    const record::ReleasePoint &p = a.release[k], &q = b.release[k];
     EXPECT_EQ(p.step, q.step);
     EXPECT_EQ(p.excavation, q.excavation);
     EXPECT_TRUE(same(p.released, q.released) && same(p.crown, q.crown));
     EXPECT_TRUE(same(p.springline, q.springline) && same(p.mean, q.mean));
   }
   EXPECT_EQ(a.damage.fallen_blocks, b.damage.fallen_blocks);
-  for (const auto& field : simulation::damage_fields)
+  for (const auto& field : record::damage_fields)
     EXPECT_TRUE(same(a.damage.*field.number, b.damage.*field.number)) << field.name;
   ASSERT_EQ(a.fallen.size(), b.fallen.size());
   for (std::size_t k = 0; k < a.fallen.size(); ++k) {
@@ -260,8 +260,8 @@ SampleRun::SampleRun() {
   model.ground = {{"friction φ", "30°"}, {"set “J 2”", "dip 65°, \"spacing\" 0.5 m"}};
 }
 
-simulation::Frame SampleRun::frame(int stage, long step) {
-  simulation::Frame frame;
+record::Frame SampleRun::frame(int stage, long step) {
+  record::Frame frame;
   frame.time = stage == 0 ? 0.0 : static_cast<double>(step - 10) * step_size;
   frame.stage = stage;
   frame.step = step;
@@ -272,7 +272,7 @@ simulation::Frame SampleRun::frame(int stage, long step) {
   for (int k = 0; k < static_cast<int>(model.blocks.size()); ++k) {
     frame.stress.push_back(
         {static_cast<float>(noise(step, 100 + k)), -0.0F, std::numeric_limits<float>::denorm_min()});
-    frame.status.push_back(static_cast<simulation::BlockStatus>((step + k) % 4));
+    frame.status.push_back(static_cast<record::BlockStatus>((step + k) % 4));
     frame.velocity.push_back(
         {static_cast<float>(noise(step, 200 + k)), static_cast<float>(noise(step, 300 + k))});
     frame.order.push_back(static_cast<std::int16_t>(1 + (step + k) % 300));
@@ -288,12 +288,12 @@ simulation::Frame SampleRun::frame(int stage, long step) {
   return frame;
 }
 
-simulation::ContactFrame SampleRun::contacts(int stage, long step, int count) {
-  simulation::ContactFrame frame{static_cast<double>(step) * step_size, stage, {}, step};
+record::ContactFrame SampleRun::contacts(int stage, long step, int count) {
+  record::ContactFrame frame{static_cast<double>(step) * step_size, stage, {}, step};
   for (int k = 0; k < count; ++k) {
     frame.contacts.push_back({k % 3,
                               (k + 1) % 3,
-                              static_cast<simulation::ContactState>(k % 3),
+                              static_cast<record::ContactState>(k % 3),
                               {noise(step, k), noise(step, k + 1)},
                               {0.6, 0.8},
                               noise(step, k + 2),
@@ -306,8 +306,8 @@ simulation::ContactFrame SampleRun::contacts(int stage, long step, int count) {
   return frame;
 }
 
-simulation::HistoryRow SampleRun::history(long step) {
-  simulation::HistoryRow row;
+record::HistoryRow SampleRun::history(long step) {
+  record::HistoryRow row;
   row.time = static_cast<double>(step) * step_size;
   row.step = step;
   for (int k = 0; k < 2; ++k) {
@@ -315,33 +315,33 @@ simulation::HistoryRow SampleRun::history(long step) {
                           noise(step, k + 8), 1e300, -5e-324, noise(step, k + 10), noise(step, k + 12)});
   }
   for (std::size_t k = 0; k < model.element_histories.size(); ++k) {
-    simulation::ElementState& element = row.elements.emplace_back();
+    record::ElementState& element = row.elements.emplace_back();
     element.force = step < 4 ? std::nan("") : noise(step, 14);
     element.elongation = step < 4 ? std::nan("") : noise(step, 15);
   }
   return row;
 }
 
-simulation::StepRow SampleRun::step_row(int stage, long step) {
-  simulation::StepRow row{static_cast<double>(step) * step_size,
-                          step,
-                          stage,
-                          3,
-                          step_size,
-                          noise(step, 1),
-                          noise(step, 2),
-                          17,
-                          {}};
+record::StepRow SampleRun::step_row(int stage, long step) {
+  record::StepRow row{static_cast<double>(step) * step_size,
+                      step,
+                      stage,
+                      3,
+                      step_size,
+                      noise(step, 1),
+                      noise(step, 2),
+                      17,
+                      {}};
   row.energy = {noise(step, 3), noise(step, 4),  noise(step, 5),
                 noise(step, 6), noise(step, 7),  noise(step, 8),
                 noise(step, 9), noise(step, 10), 1e-3};
   return row;
 }
 
-simulation::StageRecord SampleRun::stage(int index) {
-  simulation::StageRecord record;
+record::StageRecord SampleRun::stage(int index) {
+  record::StageRecord record;
   record.stage.name = index == 0 ? "in situ" : "first \"earthquake\"";
-  record.stage.kind = index == 0 ? simulation::StageKind::settle : simulation::StageKind::shake;
+  record.stage.kind = index == 0 ? record::StageKind::settle : record::StageKind::shake;
   if (index == 0) record.stage.excavate = {0};
   if (index == 0) record.stage.max_steps = 500;
   if (index == 1) {
@@ -366,18 +366,18 @@ simulation::StageRecord SampleRun::stage(int index) {
   record.damage.fallen_blocks = index;
   record.damage.hinges = 7 * index;
   record.largest_speed = noise(index, 5);
-  if (index > 0) record.standing = simulation::Standing::collapsed;
+  if (index > 0) record.standing = record::Standing::collapsed;
   double value = noise(index, 1);
-  for (const auto& field : simulation::damage_fields) record.damage.*field.number = value *= -0.7;
+  for (const auto& field : record::damage_fields) record.damage.*field.number = value *= -0.7;
   record.damage.closure_horizontal = 1e-17;
-  record.fallen = {{0, noise(index, 2), noise(index, 3), noise(index, 4), simulation::WallPart::invert},
-                   {2, 0.1, 0.0, std::numeric_limits<double>::quiet_NaN(), simulation::WallPart::none}};
+  record.fallen = {{0, noise(index, 2), noise(index, 3), noise(index, 4), record::WallPart::invert},
+                   {2, 0.1, 0.0, std::numeric_limits<double>::quiet_NaN(), record::WallPart::none}};
   record.wall_time = 1.0 / 3.0;
   return record;
 }
 
-simulation::RunRecord SampleRun::run() {
-  simulation::RunRecord record;
+record::RunRecord SampleRun::run() {
+  record::RunRecord record;
   record.steps = 30;
   record.wall_time = 2.0 / 3.0;
   record.dof = 36;
@@ -390,7 +390,7 @@ simulation::RunRecord SampleRun::run() {
   return record;
 }
 
-void SampleRun::play(simulation::RunObserver& observer, long first, long last, bool finish) {
+void SampleRun::play(record::RunObserver& observer, long first, long last, bool finish) {
   observer.begin(model);
   if (const long done = first - 1; done > 0) {
     const int stages = done < 10 ? 0 : done < 30 ? 1 : 2;
@@ -401,7 +401,7 @@ void SampleRun::play(simulation::RunObserver& observer, long first, long last, b
     const int index = step <= 10 ? 0 : 1;
     if (index != stage_now) {
       stage_now = index;
-      simulation::StageRecord record = stage(index);
+      record::StageRecord record = stage(index);
       record.steps = step - (index == 0 ? 1 : 11);  // done before: a resumed stage goes on
       record.duration = 0.0;
       observer.stage_begin(index, record);

@@ -138,7 +138,7 @@ TEST(Summary, WhatIsNoNumberIsNull) {
 
 TEST(HistoriesCsv, HeaderAndRows) {
   SampleRun sample;
-  const std::vector<simulation::HistoryRow> rows{sample.history(1), sample.history(2)};
+  const std::vector<record::HistoryRow> rows{sample.history(1), sample.history(2)};
   const std::string text = histories_csv(sample.model, rows);
   std::vector<std::string> lines;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -163,7 +163,7 @@ TEST(HistoriesCsv, HeaderAndRows) {
   EXPECT_EQ(values[10], rows[1].points[1].ux);
   EXPECT_EQ(values[15], 1e300);
   EXPECT_EQ(values[18], rows[1].points[1].ay);
-  simulation::ModelRecord one;
+  record::ModelRecord one;
   one.history_names = {"p"};
   EXPECT_EQ(histories_csv(one, {}), "time,p.ux,p.uy,p.vx,p.vy,p.sxx,p.syy,p.sxy,p.ax,p.ay\n");
 }

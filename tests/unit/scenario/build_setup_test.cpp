@@ -26,10 +26,12 @@ order = 3
 )",
                                        {"block.top.density=1000"}),
                                  0);
-  EXPECT_EQ(setup.properties[0].material, (Material{2600.0, 1e9, 0.2, PlaneState::plane_stress}));
+  EXPECT_EQ(setup.properties[0].material,
+            (block::Material{2600.0, 1e9, 0.2, block::PlaneState::plane_stress}));
   EXPECT_EQ(setup.properties[0].order, 1);
   EXPECT_TRUE(setup.properties[0].fixed);
-  EXPECT_EQ(setup.properties[1].material, (Material{1000.0, 2e9, 0.2, PlaneState::plane_stress}));
+  EXPECT_EQ(setup.properties[1].material,
+            (block::Material{1000.0, 2e9, 0.2, block::PlaneState::plane_stress}));
   EXPECT_EQ(setup.properties[1].order, 3);
 }
 
@@ -90,7 +92,7 @@ TEST(BuildSetup, StiffnessIsLeftToTheModelUnlessGiven) {
   const auto setup = build_setup(parse(runnable_domain), 0);
   EXPECT_FALSE(setup.joints.standard.normal_stiffness);
   EXPECT_FALSE(setup.joints.joint_sets[0].normal_stiffness);
-  EXPECT_EQ(setup.joints.standard.stiffness_ratio, JointProperties{}.stiffness_ratio);
+  EXPECT_EQ(setup.joints.standard.stiffness_ratio, contact::JointProperties{}.stiffness_ratio);
   EXPECT_EQ(setup.joints.frame.friction, 0.0);
 }
 

@@ -18,7 +18,7 @@ TEST(Defaults, OfWhatIsNotInTheFile) {
   EXPECT_EQ(s.gravity, (Vec2{0.0, -9.81}));
   EXPECT_FALSE(s.section_azimuth);
   EXPECT_FALSE(s.domain);
-  EXPECT_EQ(s.rock.state, PlaneState::plane_stress);
+  EXPECT_EQ(s.rock.state, block::PlaneState::plane_stress);
   EXPECT_EQ(s.rock.order, 1);
   EXPECT_FALSE(s.joints.cohesion);
   EXPECT_FALSE(s.blocks[1].fixed);

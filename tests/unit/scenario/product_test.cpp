@@ -25,7 +25,7 @@ TEST(Tunnel, SectionDomainAndRock) {
   EXPECT_EQ(s.rock.density, 2270.0);
   EXPECT_EQ(s.rock.young, 3.0e9);
   EXPECT_EQ(s.rock.poisson, 0.21);
-  EXPECT_EQ(s.rock.state, PlaneState::plane_stress);
+  EXPECT_EQ(s.rock.state, block::PlaneState::plane_stress);
   EXPECT_EQ(s.rock.order, 1);
   EXPECT_EQ(s.joints.friction, 39.0);
   EXPECT_FALSE(s.joints.normal_stiffness);
@@ -64,7 +64,7 @@ TEST(Tunnel, ExcavationMotionAndStages) {
   EXPECT_TRUE(s.motions[0].components[2].vertical);
   EXPECT_EQ(s.motions[0].window, (std::pair{5.0, 25.0}));
 
-  using simulation::StageKind;
+  using record::StageKind;
   ASSERT_EQ(s.stages.size(), 5U);
   EXPECT_EQ(s.stages[0].kind, StageKind::settle);
   EXPECT_TRUE(s.stages[0].excavate.empty());

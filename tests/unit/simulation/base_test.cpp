@@ -56,7 +56,7 @@ class ShakenBox {
     RunSetup& setup = scene_.setup;
     setup.excavations = {{"niche", {{2.0, 0.0}, {4.0, 0.0}, {4.0, 2.0}, {2.0, 2.0}}}};
     setup.time_step = 0.002;
-    setup.stages = {stage("settle", StageKind::settle), stage("move", StageKind::rest, 2.5)};
+    setup.stages = {stage("settle", record::StageKind::settle), stage("move", record::StageKind::rest, 2.5)};
     setup.stages[0].excavate = {0};
     if (by == By::fixed_blocks) {
       std::vector<std::pair<double, double>> rows;
@@ -70,12 +70,12 @@ class ShakenBox {
         acceleration.push_back({length * way_acceleration(time.back()), 0.0});
       }
       setup.motions.push_back({"way", time, acceleration});
-      setup.stages[1].kind = StageKind::shake;
+      setup.stages[1].kind = record::StageKind::shake;
       setup.stages[1].motion = 0;
     }
   }
-  Damage damage() {
-    RunObserver nobody;
+  record::Damage damage() {
+    record::RunObserver nobody;
     return run(scene_.setup, {}, nobody).stages.back().damage;
   }
   RunSetup& setup() { return scene_.setup; }
@@ -86,8 +86,8 @@ class ShakenBox {
 
 TEST(Base, FixedBlocksThatMoveAndGroundThatDoesGiveTheSameDamage) {
   for (const double length : {0.5, -3.0}) {
-    const Damage moved = ShakenBox(ShakenBox::By::fixed_blocks, length).damage(),
-                 shaken = ShakenBox(ShakenBox::By::ground, length).damage();
+    const record::Damage moved = ShakenBox(ShakenBox::By::fixed_blocks, length).damage(),
+                         shaken = ShakenBox(ShakenBox::By::ground, length).damage();
     EXPECT_EQ(moved.fallen_blocks, length < 0.0 ? 1 : 0) << length;
     EXPECT_EQ(moved.fallen_area, shaken.fallen_area) << length;
     EXPECT_EQ(moved.loosened_area, shaken.loosened_area) << length;
@@ -128,10 +128,10 @@ TEST(Base, OpeningsMoveWithIt) {
   move(1, {9.0, 0.0});
   EXPECT_EQ(gauge.measure(simulator.state).loosened_area, 0.0);
   move(1, {0.4, 0.0});
-  EXPECT_EQ(gauge.status(simulator.state)[1], BlockStatus::loosened);
+  EXPECT_EQ(gauge.status(simulator.state)[1], record::BlockStatus::loosened);
   EXPECT_NEAR(gauge.measure(simulator.state).opening_filled_ratio, 0.4 / 9.0, 1e-9);
   move(1, {0.2, 0.0});
-  EXPECT_EQ(gauge.status(simulator.state)[1], BlockStatus::fallen);
+  EXPECT_EQ(gauge.status(simulator.state)[1], record::BlockStatus::fallen);
 }
 
 }  // namespace

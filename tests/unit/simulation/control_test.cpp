@@ -32,8 +32,9 @@ RunSetup pulled() {
   load.value = {0.5 * weight, 0.0};
   scene.setup.loads = {load};
   scene.setup.time_step = 0.002;
-  scene.setup.stages = {stage("settle", StageKind::settle), stage("one", StageKind::rest, 0.2),
-                        stage("two", StageKind::rest, 0.2)};
+  scene.setup.stages = {stage("settle", record::StageKind::settle),
+                        stage("one", record::StageKind::rest, 0.2),
+                        stage("two", record::StageKind::rest, 0.2)};
   return scene.setup;
 }
 
@@ -48,7 +49,7 @@ void run_to_the_end(Runner& runner) {
 
 TEST(Control, FrictionThatIsTakenAwayLetsABlockSlide) {
   const RunSetup setup = pulled();
-  RunObserver nobody;
+  record::RunObserver nobody;
   Runner held(setup, {}, nobody), freed(setup, {}, nobody);
   run_to_the_end(held);
   EXPECT_NEAR(speed_of_stone(held), 0.0, 1e-3);
@@ -61,7 +62,7 @@ TEST(Control, FrictionThatIsTakenAwayLetsABlockSlide) {
 
 TEST(Control, LoadsAreScaled) {
   const RunSetup setup = pulled();
-  RunObserver nobody;
+  record::RunObserver nobody;
   Runner runner(setup, {}, nobody);
   while (runner.stage() == 0) runner.advance();
   runner.control().set_load_scale(0, 2.0);
@@ -72,14 +73,14 @@ TEST(Control, LoadsAreScaled) {
 
 TEST(Control, WhatVelocitiesAreSetToIsWorkFromOutside) {
   const RunSetup setup = pulled();
-  RunObserver nobody;
+  record::RunObserver nobody;
   Runner runner(setup, {}, nobody);
   while (runner.stage() == 0) runner.advance();
-  const Energy before = runner.energy();
+  const record::Energy before = runner.energy();
   std::vector<double> velocity = runner.state().velocity;
   for (double& v : velocity) v = 1.0;
   runner.control().set_velocity(velocity);
-  const Energy after = runner.energy();
+  const record::Energy after = runner.energy();
   EXPECT_GT(after.kinetic, before.kinetic);
   EXPECT_NEAR(after.input - before.input, after.kinetic - before.kinetic, 1e-9 * after.kinetic);
   const dynamics::Block& bed = runner.model().blocks[0];
@@ -88,7 +89,7 @@ TEST(Control, WhatVelocitiesAreSetToIsWorkFromOutside) {
 
 TEST(Control, OfNothingChangesNoBit) {
   const RunSetup setup = pulled();
-  RunObserver nobody;
+  record::RunObserver nobody;
   const std::string whole = run(setup, {}, nobody).state_hash;
   RunOptions options;
   options.after_step = [](Runner& runner, const dynamics::StepReport&) {
@@ -104,7 +105,7 @@ TEST(Control, OfNothingChangesNoBit) {
 TEST(Control, WhatWasChangedIsInCheckpoints) {
   const FreshFolder folder;
   const RunSetup setup = pulled();
-  RunObserver nobody;
+  record::RunObserver nobody;
   const auto steered = [&](RunOptions options) {
     options.after_step = [](Runner& runner, const dynamics::StepReport&) {
       if (runner.state().step != 20) return;
@@ -139,7 +140,7 @@ TEST(Control, WhatWasChangedIsInCheckpoints) {
 
 TEST(Control, RefusesWhatCannotBe) {
   const RunSetup setup = pulled();
-  RunObserver nobody;
+  record::RunObserver nobody;
   Runner runner(setup, {}, nobody);
   Control control = runner.control();
   EXPECT_FALSE(control.law("J2"));
@@ -157,7 +158,7 @@ TEST(Control, RefusesWhatCannotBe) {
 TEST(Control, MotionsThatAbsoluteHistoriesIntegrateStayAsPlanned) {
   RunSetup setup = pulled();
   setup.histories.push_back({.name = "top", .block = "stone", .point = {0.5, 0.25}, .absolute = true});
-  RunObserver nobody;
+  record::RunObserver nobody;
   Runner runner(setup, {}, nobody);
   runner.control().set_motion_scale(1.0);
   EXPECT_THROW(runner.control().set_motion_scale(2.0), InputError);

@@ -149,9 +149,9 @@ TEST(Damage, BlocksFallAlongGravity) {
       simulator.state.position[simulator.model.blocks[0].first + 1] += by.y;
     };
     move(0.5 * Vec2{-down.y, down.x});
-    EXPECT_EQ(gauge.status(simulator.state)[0], BlockStatus::loosened);
+    EXPECT_EQ(gauge.status(simulator.state)[0], record::BlockStatus::loosened);
     move(0.11 * down);
-    EXPECT_EQ(gauge.status(simulator.state)[0], BlockStatus::fallen);
+    EXPECT_EQ(gauge.status(simulator.state)[0], record::BlockStatus::fallen);
   }
 }
 

@@ -23,10 +23,10 @@ RunSetup hung_by_two() {
 }
 
 TEST(Elements, SpringsCarryWhatTheyHold) {
-  RunObserver nobody;
-  const RunRecord record = run(hung_by_two(), {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord record = run(hung_by_two(), {}, nobody);
   ASSERT_EQ(record.elements.size(), 2u);
-  const ElementRecord &first = record.elements[0], &second = record.elements[1];
+  const record::ElementRecord &first = record.elements[0], &second = record.elements[1];
   EXPECT_EQ(first.name, "first");
   EXPECT_EQ(second.name, "spring[1]");
   EXPECT_EQ(first.kind, "spring");
@@ -49,9 +49,9 @@ TEST(Elements, ASpringThatYieldsIsAtItsLimit) {
   setup.springs.pop_back();
   setup.staged_supports.clear();
   setup.springs[0].yield = 0.5 * hung_weight;
-  setup.stages = {stage("fall", StageKind::rest, 0.2)};
-  RunObserver nobody;
-  const RunRecord record = run(setup, {}, nobody);
+  setup.stages = {stage("fall", record::StageKind::rest, 0.2)};
+  record::RunObserver nobody;
+  const record::RunRecord record = run(setup, {}, nobody);
   ASSERT_EQ(record.elements.size(), 1u);
   EXPECT_NEAR(record.elements[0].utilization(), 1.0, 1e-9);
   EXPECT_TRUE(record.elements[0].has_yielded());
@@ -73,10 +73,10 @@ TEST(Elements, ASupportCarriesItsBlock) {
     support.points = {{0.0, 0.0}, {1.0, 0.0}};
     support.stiffness = is_edge ? 2e7 : 1e7;  // both together 2e7
     setup.supports = {support};
-    setup.stages = {stage("settle", StageKind::settle)};
+    setup.stages = {stage("settle", record::StageKind::settle)};
     setup.stages[0].tolerance = 1e-9;
-    RunObserver nobody;
-    const RunRecord record = run(setup, {}, nobody);
+    record::RunObserver nobody;
+    const record::RunRecord record = run(setup, {}, nobody);
     ASSERT_EQ(record.elements.size(), 1u);
     EXPECT_EQ(record.elements[0].name, "support[0]");
     EXPECT_EQ(record.elements[0].kind, "support");
@@ -87,17 +87,17 @@ TEST(Elements, ASupportCarriesItsBlock) {
 }
 
 /// Stops after the first step of the last stage.
-struct StopsAtTheLastStage : RunObserver {
+struct StopsAtTheLastStage : record::RunObserver {
   std::atomic<bool> stop = false;
-  void stage_begin(int stage, const StageRecord& /*record*/) override { stop = stage == 2; }
+  void stage_begin(int stage, const record::StageRecord& /*record*/) override { stop = stage == 2; }
 };
 
 TEST(Elements, LargestForcesAreKeptWhenARunGoesOn) {
   const RunSetup setup = hung_by_two();
-  RunObserver nobody;
-  const RunRecord whole = run(setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(setup, {}, nobody);
   StopsAtTheLastStage stopper;
-  const RunRecord resumed = resumed_run(setup, stopper);
+  const record::RunRecord resumed = resumed_run(setup, stopper);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(resumed.elements[k].peak_force, whole.elements[k].peak_force) << k;
     EXPECT_EQ(resumed.elements[k].peak_stage, whole.elements[k].peak_stage) << k;
@@ -105,8 +105,8 @@ TEST(Elements, LargestForcesAreKeptWhenARunGoesOn) {
   }
 }
 
-const ElementRecord* named(const RunRecord& record, const std::string& name) {
-  const auto found = std::ranges::find(record.elements, name, &ElementRecord::name);
+const record::ElementRecord* named(const record::RunRecord& record, const std::string& name) {
+  const auto found = std::ranges::find(record.elements, name, &record::ElementRecord::name);
   return found == record.elements.end() ? nullptr : &*found;
 }
 
@@ -118,7 +118,7 @@ RunSetup rock_on_a_base() {
   setup.gravity = {0.0, -g};
   setup.time_step = 0.0025;
   Boundary boundary;
-  boundary.sides = Sides::roller;
+  boundary.sides = record::Sides::roller;
   dynamics::RockLayer rock{.density = 2600.0};
   rock.shear = 2e8 / 2.4;
   rock.upright = 2e8 / (1.0 - 0.04);
@@ -126,18 +126,19 @@ RunSetup rock_on_a_base() {
   boundary.layers = {rock};
   boundary.dashpots = rock.impedance();
   setup.boundary = boundary;
-  setup.stages = {stage("settle", StageKind::settle)};
+  setup.stages = {stage("settle", record::StageKind::settle)};
   setup.stages[0].tolerance = 1e-9;
   return setup;
 }
 
 // The base carries the weight; the sides what the rock would be wide without them, which is the same on either side.
 TEST(Elements, TheBoundaryCarriesTheRock) {
-  RunObserver nobody;
-  const RunRecord record = run(rock_on_a_base(), {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord record = run(rock_on_a_base(), {}, nobody);
   ASSERT_EQ(record.elements.size(), 3u);
-  const ElementRecord *left = named(record, "boundary.left"), *right = named(record, "boundary.right"),
-                      *base = named(record, "boundary.base");
+  const record::ElementRecord *left = named(record, "boundary.left"),
+                              *right = named(record, "boundary.right"),
+                              *base = named(record, "boundary.base");
   ASSERT_TRUE(left != nullptr && right != nullptr && base != nullptr);
   const double weight = 40.0 * 2600.0 * g;
   EXPECT_EQ(base->kind, "boundary");
@@ -166,20 +167,20 @@ TEST(Elements, PressureOnWallsIsTheirForce) {
   setup.excavations.push_back({"middle", {{1.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {1.0, 2.0}}});
   setup.excavations[0].pressure.constant = 1e5;
   setup.gravity = {};
-  setup.in_situ = InSituStress{.sxx = -1e5, .syy = -1e5};
+  setup.in_situ = block::InSituStress{.sxx = -1e5, .syy = -1e5};
   setup.time_step = 0.002;
-  setup.stages = {stage("in place", StageKind::settle), stage("open", StageKind::settle)};
+  setup.stages = {stage("in place", record::StageKind::settle), stage("open", record::StageKind::settle)};
   setup.stages[0].tolerance = setup.stages[1].tolerance = 1e-7;
   setup.stages[1].excavate = {0};
-  RunObserver nobody;
-  const RunRecord record = run(setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord record = run(setup, {}, nobody);
   ASSERT_EQ(record.elements.size(), 4u);
   const std::pair<const char*, Vec2> walls[] = {{"middle.crown", {1.0, 2.0}},
                                                 {"middle.left", {1.0, 1.0}},
                                                 {"middle.right", {2.0, 1.0}},
                                                 {"middle.invert", {1.0, 1.0}}};
   for (const auto& [name, from] : walls) {
-    const ElementRecord* wall = named(record, name);
+    const record::ElementRecord* wall = named(record, name);
     ASSERT_NE(wall, nullptr) << name;
     EXPECT_EQ(wall->kind, "pressure");
     EXPECT_NEAR(wall->force, 1e5, 100.0) << name;
@@ -189,13 +190,13 @@ TEST(Elements, PressureOnWallsIsTheirForce) {
 }
 
 /// Keeps frames and rows of histories.
-struct Watcher : RunObserver {
-  ModelRecord model;
-  std::vector<Frame> frames;
-  std::vector<HistoryRow> rows;
-  void begin(const ModelRecord& record) override { model = record; }
-  void frame(const Frame& frame) override { frames.push_back(frame); }
-  void history(const HistoryRow& row) override { rows.push_back(row); }
+struct Watcher : record::RunObserver {
+  record::ModelRecord model;
+  std::vector<record::Frame> frames;
+  std::vector<record::HistoryRow> rows;
+  void begin(const record::ModelRecord& record) override { model = record; }
+  void frame(const record::Frame& frame) override { frames.push_back(frame); }
+  void history(const record::HistoryRow& row) override { rows.push_back(row); }
 };
 
 History follows(const char* name, const char* element) {
@@ -209,7 +210,7 @@ TEST(Elements, FramesAndHistoriesSayWhatTheyCarry) {
   RunSetup setup = hung_by_two();
   setup.histories = {follows("cell", "spring[1]"), {"corner", "b1", {0.5, 0.5}}};
   Watcher watcher;
-  const RunRecord record = run(setup, {}, watcher);
+  const record::RunRecord record = run(setup, {}, watcher);
   ASSERT_EQ(watcher.model.elements.size(), 2u);
   EXPECT_EQ(watcher.model.elements[0].name, "first");
   EXPECT_EQ(watcher.model.elements[0].from.y, 3.0);
@@ -218,7 +219,7 @@ TEST(Elements, FramesAndHistoriesSayWhatTheyCarry) {
   EXPECT_EQ(watcher.model.history_names, std::vector<std::string>{"corner"});
   ASSERT_EQ(watcher.model.element_histories.size(), 1u);
   EXPECT_EQ(watcher.model.element_histories[0].element, 1);
-  const Frame& last = watcher.frames.back();
+  const record::Frame& last = watcher.frames.back();
   ASSERT_EQ(last.elements.size(), 2u);
   EXPECT_EQ(last.elements[1].force, record.elements[1].force);
   EXPECT_EQ(last.elements[0].from.y, record.elements[0].from.y);
@@ -233,7 +234,7 @@ TEST(Elements, FramesAndHistoriesSayWhatTheyCarry) {
 TEST(Elements, AHistoryNeedsTheNameOfOne) {
   RunSetup setup = hung_by_two();
   setup.histories = {follows("cell", "frist")};
-  RunObserver nobody;
+  record::RunObserver nobody;
   try {
     run(setup, {}, nobody);
     FAIL();
@@ -247,20 +248,20 @@ TEST(Elements, AHistoryNeedsTheNameOfOne) {
 
 TEST(Elements, DamageHasTheirUtilization) {
   RunSetup setup = hung_by_two();
-  RunObserver nobody;
-  for (const Damage& damage : {run(setup, {}, nobody).stages.back().damage}) {
+  record::RunObserver nobody;
+  for (const record::Damage& damage : {run(setup, {}, nobody).stages.back().damage}) {
     EXPECT_TRUE(std::isnan(damage.largest_utilization));  // no spring has a limit
     EXPECT_EQ(damage.yielded_elements, 0);
   }
   setup.springs[0].yield = 2.0 * hung_weight;
-  const RunRecord holds = run(setup, {}, nobody);
+  const record::RunRecord holds = run(setup, {}, nobody);
   EXPECT_NEAR(holds.stages.front().damage.largest_utilization, 0.6, 1e-3);
   EXPECT_EQ(holds.stages.back().damage.yielded_elements, 0);
   setup.springs.pop_back();
   setup.staged_supports.clear();
   setup.springs[0].yield = 0.5 * hung_weight;
-  setup.stages = {stage("fall", StageKind::rest, 0.2)};
-  const Damage fallen = run(setup, {}, nobody).stages.back().damage;
+  setup.stages = {stage("fall", record::StageKind::rest, 0.2)};
+  const record::Damage fallen = run(setup, {}, nobody).stages.back().damage;
   EXPECT_NEAR(fallen.largest_utilization, 1.0, 1e-9);
   EXPECT_EQ(fallen.yielded_elements, 1);
 }

@@ -21,12 +21,12 @@ RunSetup block_on_ground(double young = 1e9) {
   scene.rectangle({0.0, 0.0}, 1.0, 0.5);
   RunSetup setup = scene.setup;
   setup.time_step = 0.002;
-  setup.stages.push_back(stage("rest", StageKind::rest, 0.02));
+  setup.stages.push_back(stage("rest", record::StageKind::rest, 0.02));
   return setup;
 }
 
 std::string failure_of(const RunSetup& setup) {
-  RunObserver nobody;
+  record::RunObserver nobody;
   try {
     run(setup, {}, nobody);
   } catch (const RunError& error) {
@@ -37,10 +37,10 @@ std::string failure_of(const RunSetup& setup) {
 
 // No part of the step converges, and it is cut into more parts than there is time for.
 TEST(GivingUp, AStepThatIsStoppedWithinIsNoStep) {
-  struct Records final : RunObserver {
+  struct Records final : record::RunObserver {
     int frames = 0, contacts_seen = 0;
-    void frame(const Frame&) override { ++frames; }
-    void contacts(const ContactFrame&) override { ++contacts_seen; }
+    void frame(const record::Frame&) override { ++frames; }
+    void contacts(const record::ContactFrame&) override { ++contacts_seen; }
   };
   RunSetup setup = block_on_ground();
   setup.solver.max_iterations = 0;
@@ -53,7 +53,7 @@ TEST(GivingUp, AStepThatIsStoppedWithinIsNoStep) {
     stop = true;
   });
   Records records;
-  const RunRecord record = run(setup, options, records);
+  const record::RunRecord record = run(setup, options, records);
   other.join();
   EXPECT_TRUE(record.interrupted);
   EXPECT_EQ(record.steps, 0);
@@ -82,9 +82,9 @@ TEST(GivingUp, AStopThatWasAskedForBeforeEndsTheStep) {
 }
 
 TEST(GivingUp, TheFirstOfTwoFailuresIsTold) {
-  struct FullDisk final : RunObserver {
-    void frame(const Frame&) override { throw RunError("no space left"); }
-    void end(const RunRecord&) override { throw RunError("the file is half written"); }
+  struct FullDisk final : record::RunObserver {
+    void frame(const record::Frame&) override { throw RunError("no space left"); }
+    void end(const record::RunRecord&) override { throw RunError("the file is half written"); }
   };
   FullDisk disk;
   const auto fails = [&] { run(block_on_ground(), {}, disk); };
@@ -93,10 +93,10 @@ TEST(GivingUp, TheFirstOfTwoFailuresIsTold) {
 }
 
 TEST(GivingUp, NoMoreMemoryKeepsTheResults) {
-  struct Greedy final : RunObserver {
+  struct Greedy final : record::RunObserver {
     bool ended = false;
-    void frame(const Frame&) override { throw std::bad_alloc(); }
-    void end(const RunRecord& record) override { ended = record.interrupted; }
+    void frame(const record::Frame&) override { throw std::bad_alloc(); }
+    void end(const record::RunRecord& record) override { ended = record.interrupted; }
   };
   Greedy greedy;
   const auto fails = [&] { run(block_on_ground(), {}, greedy); };

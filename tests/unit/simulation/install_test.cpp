@@ -18,7 +18,7 @@ constexpr double stiffness = hanger_stiffness;
 /// m, by which the block has gone up since before the run, at the end of each stage.
 std::vector<double> heights(const RunSetup& setup) {
   std::vector<double> at_ends;
-  RunObserver nobody;
+  record::RunObserver nobody;
   Runner runner(setup, {}, nobody);
   while (!runner.done()) {
     if (runner.advance().ended_stage)
@@ -38,7 +38,7 @@ TEST(Install, ASupportCarriesWhatComesAfterIt) {
 
 TEST(Install, AddsNoEnergy) {
   const Scene scene = hung_block();
-  RunObserver nobody;
+  record::RunObserver nobody;
   Runner runner(scene.setup, {}, nobody);
   while (runner.stage() < 1) runner.advance();
   const dynamics::State before = runner.state();
@@ -67,8 +67,8 @@ TEST(Install, ASpringThatAStageWouldInstallLaterIsNotThere) {
 TEST(Install, HasTheSameBitsForAnyThreadsAndAfterAnInterruption) {
   Scene scene = hung_block();
   scene.setup.stages.back().duration = 4.3;
-  RunObserver nobody;
-  const RunRecord whole = run(scene.setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(scene.setup, {}, nobody);
   RunOptions two;
   two.threads = 2;
   EXPECT_EQ(run(scene.setup, two, nobody).state_hash, whole.state_hash);

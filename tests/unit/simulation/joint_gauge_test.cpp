@@ -27,7 +27,7 @@ class HangingBlock : public ::testing::Test {
     contact::Surface& surface = simulator_.model.surface;
     for (int v = surface.block_begin[1]; v < surface.block_begin[2]; ++v) surface.position[at(v)] += by;
   }
-  Damage measure() { return gauge_.measure(simulator_.state); }
+  record::Damage measure() { return gauge_.measure(simulator_.state); }
 
   Scene scene_;
   Simulator simulator_;
@@ -45,7 +45,7 @@ class HangingBlock : public ::testing::Test {
 
 TEST_F(HangingBlock, ABlockThatFallsTakesNothingAway) {
   move({0.004, -0.03});
-  Damage damage = measure();
+  record::Damage damage = measure();
   EXPECT_NEAR(damage.slip_max, 0.03, 1e-12);
   EXPECT_NEAR(damage.opening_max, 0.004, 1e-12);
   EXPECT_NEAR(damage.slipped_length, 1.0, 1e-12);
@@ -71,7 +71,7 @@ TEST_F(HangingBlock, LooksBetweenMeasurementsCount) {
   move({0.0, -0.02});
   gauge_.watch(simulator_.state);
   move({0.0, 0.02});
-  const Damage damage = measure();
+  const record::Damage damage = measure();
   EXPECT_NEAR(damage.slip_max, 0.0, 1e-12);
   EXPECT_NEAR(damage.slip_max_ever, 0.02, 1e-12);
 }
@@ -83,15 +83,16 @@ RunSetup dropping_block() {
   scene.rectangle(std::sqrt(0.5) * Vec2{-0.7, 1.3}, 0.5, 0.5, 45.0);
   scene.setup.time_step = 0.002;
   scene.setup.damage.fall_distance = 0.2;
-  scene.setup.stages = {stage("start", StageKind::rest, 0.2), stage("slide", StageKind::rest, 0.5),
-                        stage("lie", StageKind::rest, 0.2)};
+  scene.setup.stages = {stage("start", record::StageKind::rest, 0.2),
+                        stage("slide", record::StageKind::rest, 0.5),
+                        stage("lie", record::StageKind::rest, 0.2)};
   return scene.setup;
 }
 
 TEST(JointGauge, AResumedRunRemembersTheSame) {
   const FreshFolder folder;
-  RunObserver nobody;
-  const RunRecord whole = run(dropping_block(), {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(dropping_block(), {}, nobody);
   ASSERT_EQ(whole.stages[0].damage.fallen_blocks, 0);
   ASSERT_EQ(whole.stages[1].damage.fallen_blocks, 1);
   EXPECT_GT(whole.stages[0].damage.slip_max, 0.01);
@@ -105,10 +106,10 @@ TEST(JointGauge, AResumedRunRemembersTheSame) {
   ASSERT_TRUE(run(dropping_block(), options, stopper).interrupted);
   options.stop = nullptr;
   options.resume = true;
-  const RunRecord resumed = run(dropping_block(), options, nobody);
+  const record::RunRecord resumed = run(dropping_block(), options, nobody);
   ASSERT_EQ(resumed.state_hash, whole.state_hash);
   for (std::size_t k = 0; k < 3; ++k) {
-    for (const auto& field : damage_fields) {
+    for (const auto& field : record::damage_fields) {
       const double one = resumed.stages[k].damage.*field.number, other = whole.stages[k].damage.*field.number;
       EXPECT_TRUE(one == other || (std::isnan(one) && std::isnan(other))) << field.name;
     }

@@ -18,9 +18,9 @@ namespace keyblock::simulation {
 namespace {
 
 /// Ends a run after so many steps.
-struct FewSteps final : RunObserver {
+struct FewSteps final : record::RunObserver {
   explicit FewSteps(long count) : left(count) {}
-  void progress(const Progress& /*unused*/) override {
+  void progress(const record::Progress& /*unused*/) override {
     if (--left <= 0) stop = true;
   }
   long left;
@@ -95,7 +95,7 @@ class MutatedCheckpoint : public ::testing::Test {
 
 TEST_F(MutatedCheckpoint, AtTheEndOfAStage) {
   RunSetup setup = mutated_scene();
-  setup.stages = {stage("in situ", StageKind::settle), stage("after", StageKind::rest, 1.0)};
+  setup.stages = {stage("in situ", record::StageKind::settle), stage("after", record::StageKind::rest, 1.0)};
   setup.stages[0].excavate = {0};
   mutate(setup, checkpoint_of(setup, 400), 300);
 }
@@ -103,13 +103,13 @@ TEST_F(MutatedCheckpoint, AtTheEndOfAStage) {
 TEST_F(MutatedCheckpoint, WithinAStageOfTheNewmarkFamily) {
   RunSetup setup = mutated_scene();
   setup.solver.integrator = dynamics::TimeIntegration::average_acceleration;
-  setup.stages = {stage("rest", StageKind::rest, 10.0)};
+  setup.stages = {stage("rest", record::StageKind::rest, 10.0)};
   mutate(setup, checkpoint_of(setup, 2100), 300);
 }
 
 TEST_F(MutatedCheckpoint, WithinAStageThatSettles) {
   RunSetup setup = mutated_scene();
-  setup.stages = {stage("in situ", StageKind::settle)};
+  setup.stages = {stage("in situ", record::StageKind::settle)};
   setup.stages[0].tolerance = 1e-30;
   setup.stages[0].max_steps = 2500;
   mutate(setup, checkpoint_of(setup, 2100), 300);
@@ -120,8 +120,8 @@ TEST_F(MutatedCheckpoint, OfAnExcavationOpenedInParts) {
   setup.system.blocks[2].excavations = {0};
   setup.excavations[0].outline = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.5}, {0.0, 0.5}};
   setup.excavations[0].pressure.constant = 1e3;
-  setup.stages = {stage("in situ", StageKind::settle), stage("open", StageKind::settle),
-                  stage("after", StageKind::rest, 1.0)};
+  setup.stages = {stage("in situ", record::StageKind::settle), stage("open", record::StageKind::settle),
+                  stage("after", record::StageKind::rest, 1.0)};
   setup.stages[1].excavate = {0};
   setup.stages[1].release = {{0, 0.5}};
   mutate(setup, checkpoint_of(setup, 200), 300);
@@ -130,7 +130,7 @@ TEST_F(MutatedCheckpoint, OfAnExcavationOpenedInParts) {
 // More than the file could hold, so that no memory is asked for.
 TEST_F(MutatedCheckpoint, CountsBeyondTheFileAreRefused) {
   RunSetup setup = mutated_scene();
-  setup.stages = {stage("after", StageKind::rest, 1.0), stage("later", StageKind::rest, 1.0)};
+  setup.stages = {stage("after", record::StageKind::rest, 1.0), stage("later", record::StageKind::rest, 1.0)};
   const std::string bytes = checkpoint_of(setup, 600);
   constexpr std::size_t count_of_positions = 2 * sizeof(std::uint64_t) + 3 * sizeof(double);
   for (const std::uint64_t count :

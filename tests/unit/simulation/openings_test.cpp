@@ -36,22 +36,22 @@ TEST(Openings, OutlinesThatOverlapCountOnce) {
 
 TEST(Openings, PlacesBehindTheWalls) {
   const Openings openings = openings_of({{"tunnel", box(0.0, 0.0, 4.0, 3.0).outer}});
-  const auto expect = [&](const Polygon& block, double depth, WallPart part) {
+  const auto expect = [&](const Polygon& block, double depth, record::WallPart part) {
     const Openings::Place place = openings.behind_walls(block, straight_down);
     EXPECT_NEAR(place.depth, depth, 1e-12);
     EXPECT_EQ(place.part, part);
   };
-  expect(box(1.0, 3.0, 2.0, 4.5), 1.5, WallPart::crown);
-  expect(box(1.0, -0.7, 2.0, 0.0), 0.7, WallPart::invert);
-  expect(box(-1.2, 1.0, 0.0, 2.0), 1.2, WallPart::left);
-  expect(box(4.0, 1.0, 5.1, 2.0), 1.1, WallPart::right);
+  expect(box(1.0, 3.0, 2.0, 4.5), 1.5, record::WallPart::crown);
+  expect(box(1.0, -0.7, 2.0, 0.0), 0.7, record::WallPart::invert);
+  expect(box(-1.2, 1.0, 0.0, 2.0), 1.2, record::WallPart::left);
+  expect(box(4.0, 1.0, 5.1, 2.0), 1.1, record::WallPart::right);
   // Beyond a corner of the outline: up to 45° from the vertical it is the crown.
-  expect(box(4.0, 3.0, 4.3, 3.4), 0.5, WallPart::crown);
-  expect(box(4.0, 3.0, 4.4, 3.3), 0.5, WallPart::right);
-  EXPECT_EQ(Openings().behind_walls(box(0.0, 0.0, 1.0, 1.0), straight_down).part, WallPart::none);
+  expect(box(4.0, 3.0, 4.3, 3.4), 0.5, record::WallPart::crown);
+  expect(box(4.0, 3.0, 4.4, 3.3), 0.5, record::WallPart::right);
+  EXPECT_EQ(Openings().behind_walls(box(0.0, 0.0, 1.0, 1.0), straight_down).part, record::WallPart::none);
   // Gravity that leans takes the crown with it.
-  EXPECT_EQ(openings.behind_walls(box(4.0, 1.0, 5.1, 2.0), {-1.0, 0.0}).part, WallPart::crown);
-  EXPECT_EQ(openings.behind_walls(box(1.0, 3.0, 2.0, 4.5), {-1.0, 0.0}).part, WallPart::left);
+  EXPECT_EQ(openings.behind_walls(box(4.0, 1.0, 5.1, 2.0), {-1.0, 0.0}).part, record::WallPart::crown);
+  EXPECT_EQ(openings.behind_walls(box(1.0, 3.0, 2.0, 4.5), {-1.0, 0.0}).part, record::WallPart::left);
 }
 
 TEST(Openings, TheNearestOneCounts) {
@@ -59,14 +59,15 @@ TEST(Openings, TheNearestOneCounts) {
       openings_of({{"left", box(0.0, 0.0, 2.0, 2.0).outer}, {"right", box(6.0, 0.0, 8.0, 2.0).outer}});
   const Openings::Place place = openings.behind_walls(box(5.0, 0.5, 6.0, 1.0), straight_down);
   EXPECT_NEAR(place.depth, 1.0, 1e-12);
-  EXPECT_EQ(place.part, WallPart::left);  // of the right one
+  EXPECT_EQ(place.part, record::WallPart::left);  // of the right one
 }
 
 TEST(Fallen, NamesOfParts) {
-  for (const WallPart part : {WallPart::crown, WallPart::left, WallPart::right, WallPart::invert})
-    EXPECT_EQ(wall_part_of(wall_part_name(part)), part);
-  EXPECT_EQ(wall_part_name(WallPart::none), nullptr);
-  EXPECT_EQ(wall_part_of("roof"), WallPart::none);
+  for (const record::WallPart part :
+       {record::WallPart::crown, record::WallPart::left, record::WallPart::right, record::WallPart::invert})
+    EXPECT_EQ(record::wall_part_of(record::wall_part_name(part)), part);
+  EXPECT_EQ(record::wall_part_name(record::WallPart::none), nullptr);
+  EXPECT_EQ(record::wall_part_of("roof"), record::WallPart::none);
 }
 
 /// A tunnel of 4 m by 3 m with two blocks over its crown and one in its left wall; density 2600 kg/m³.
@@ -81,7 +82,7 @@ class FallingRock : public ::testing::Test {
     const dynamics::Block& block = simulator_.model.blocks[b];
     simulator_.state.position[block.first + 1] -= std::sqrt(block.area);
   }
-  Damage measure() { return gauge_.measure(simulator_.state); }
+  record::Damage measure() { return gauge_.measure(simulator_.state); }
 
   Scene scene_;
   Simulator simulator_;
@@ -99,9 +100,10 @@ class FallingRock : public ::testing::Test {
 };
 
 TEST_F(FallingRock, WeightPressureLargestBlockAndDepths) {
-  Damage damage = measure();
-  for (const auto member : {&Damage::fallen_weight, &Damage::largest_block_pressure, &Damage::fallen_depth,
-                            &Damage::fallen_depth_crown, &Damage::largest_fallen_area})
+  record::Damage damage = measure();
+  for (const auto member : {&record::Damage::fallen_weight, &record::Damage::largest_block_pressure,
+                            &record::Damage::fallen_depth, &record::Damage::fallen_depth_crown,
+                            &record::Damage::largest_fallen_area})
     EXPECT_EQ(damage.*member, 0.0);
   for (std::size_t b = 0; b < 3; ++b) drop(b);
   damage = measure();
@@ -119,7 +121,7 @@ TEST_F(FallingRock, WeightPressureLargestBlockAndDepths) {
   const auto fallen = gauge_.fallen(gauge_.status(simulator_.state));
   ASSERT_EQ(fallen.size(), 3U);
   EXPECT_EQ(fallen[2].block, 2);
-  EXPECT_EQ(fallen[2].part, WallPart::left);
+  EXPECT_EQ(fallen[2].part, record::WallPart::left);
   EXPECT_NEAR(fallen[2].weight, 0.4 * weight, 1e-6);
 }
 
@@ -132,7 +134,7 @@ TEST(Fallen, WithoutAnOpening) {
   DamageGauge gauge(scene.setup, simulator.model);
   gauge.start(simulator.state, {});
   simulator.state.position[simulator.model.blocks[0].first + 1] -= 1.0;
-  const Damage damage = gauge.measure(simulator.state);
+  const record::Damage damage = gauge.measure(simulator.state);
   EXPECT_NEAR(damage.fallen_weight, 2600.0 * g, 1e-6);
   EXPECT_NEAR(damage.largest_fallen_weight, 2600.0 * g, 1e-6);
   EXPECT_TRUE(std::isnan(damage.largest_block_pressure));

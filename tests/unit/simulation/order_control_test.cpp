@@ -31,34 +31,34 @@ RunSetup slab(int order) {
   }
   setup.time_step = 0.002;
   setup.scenario = "slab";
-  Stage settle;
+  record::Stage settle;
   settle.name = "settle";
   settle.tolerance = 1e-4;
-  Stage rest;
+  record::Stage rest;
   rest.name = "rest";
-  rest.kind = StageKind::rest;
+  rest.kind = record::StageKind::rest;
   rest.duration = 0.2;
   setup.stages = {settle, rest};
   return setup;
 }
 
-struct Tip final : RunObserver {
+struct Tip final : record::RunObserver {
   double down = 0.0;
   std::atomic<bool> stop = false;
   long after = -1;
   std::vector<std::int16_t> first_orders, orders;
-  void frame(const Frame& frame) override {
+  void frame(const record::Frame& frame) override {
     if (first_orders.empty()) first_orders = frame.order;
     orders = frame.order;
   }
-  void history(const HistoryRow& row) override { down = -row.points[0].uy; }
-  void step(const StepRow& row) override { stop = after >= 0 && row.step >= after; }
+  void history(const record::HistoryRow& row) override { down = -row.points[0].uy; }
+  void step(const record::StepRow& row) override { stop = after >= 0 && row.step >= after; }
 };
 
 TEST(OrderControl, RaisesWhereStressVariesAndLowersWhereItDoesNot) {
   Tip best, chosen, first;
   run(slab(8), {}, best);
-  const RunRecord record = run(slab(0), {}, chosen);
+  const record::RunRecord record = run(slab(0), {}, chosen);
   run(slab(1), {}, first);
   EXPECT_TRUE(record.stages[0].equilibrium_reached);
   EXPECT_NEAR(chosen.down / best.down, 1.0, 0.01);
@@ -128,7 +128,7 @@ TEST(OrderControl, EnergyOfSpringsIsThatOfWhereBlocksAreNow) {
 TEST(OrderControl, ResumedRunEndsInTheSameBits) {
   const FreshFolder folder;
   Tip nobody, stopper;
-  const RunRecord whole = run(slab(0), {}, nobody);
+  const record::RunRecord whole = run(slab(0), {}, nobody);
   stopper.after = whole.stages[0].steps + 10;
   RunOptions options;
   options.directory = folder;

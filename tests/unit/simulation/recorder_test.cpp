@@ -11,19 +11,19 @@
 namespace keyblock::simulation {
 namespace {
 
-struct AllContacts final : RunObserver {
-  std::vector<ContactFrame> frames;
-  void contacts(const ContactFrame& frame) override { frames.push_back(frame); }
+struct AllContacts final : record::RunObserver {
+  std::vector<record::ContactFrame> frames;
+  void contacts(const record::ContactFrame& frame) override { frames.push_back(frame); }
 };
 
 /// Contacts of a block that falls on a floor at y = 0, after every step.
-std::vector<ContactFrame> contacts_of_a_fall() {
+std::vector<record::ContactFrame> contacts_of_a_fall() {
   Scene scene(3e9, 30.0);
   scene.setup.solver.contact_damping = 0.0;  // forces are those of the springs alone
   scene.rectangle({-1.0, -1.0}, 3.0, 1.0, 0.0, true);
   scene.rectangle({0.0, 0.01}, 0.1, 0.1);
   scene.setup.time_step = scene.setup.output.contact_interval = 0.002;
-  scene.setup.stages.push_back(stage("fall", StageKind::rest, 0.1));
+  scene.setup.stages.push_back(stage("fall", record::StageKind::rest, 0.1));
   AllContacts observer;
   run(scene.setup, {}, observer);
   return observer.frames;
@@ -34,18 +34,18 @@ TEST(Recorder, GapOfAContactIsThatOfItsForce) {
   const auto frames = contacts_of_a_fall();
   bool struck = false;
   int pressed = 0;
-  for (const ContactFrame& frame : frames) {
-    for (const ContactRecord& c : frame.contacts) {
+  for (const record::ContactFrame& frame : frames) {
+    for (const record::ContactRecord& c : frame.contacts) {
       EXPECT_NEAR(c.gap, c.position.y, 1e-9) << frame.time;
       if (c.normal_force > 0.0) {
         if (!struck) {
-          EXPECT_EQ(c.state, ContactState::locked);
+          EXPECT_EQ(c.state, record::ContactState::locked);
         }
         EXPECT_LT(c.gap, 0.0) << frame.time;
         EXPECT_NEAR(-c.gap * 20.0 * 3e9 * c.length / c.normal_force, 1.0, 1e-6) << frame.time;
         ++pressed;
       } else {
-        EXPECT_EQ(c.state, ContactState::open) << frame.time;
+        EXPECT_EQ(c.state, record::ContactState::open) << frame.time;
         EXPECT_GE(c.gap, 0.0) << frame.time;
       }
     }
@@ -61,11 +61,11 @@ TEST(Recorder, ForcesOfContactsOnBlockA) {
   const Vec2 along{std::cos(20.0 * degree), std::sin(20.0 * degree)};
   scene.rectangle(Vec2{-1.0, -1.0} + perpendicular(along) + along, 1.0, 0.5, 20.0);
   scene.setup.time_step = 0.002;
-  scene.setup.stages.push_back(stage("settle", StageKind::settle));
+  scene.setup.stages.push_back(stage("settle", record::StageKind::settle));
   AllContacts observer;
   run(scene.setup, {}, observer);
   Vec2 on_block;
-  for (const ContactRecord& c : observer.frames.back().contacts) {
+  for (const record::ContactRecord& c : observer.frames.back().contacts) {
     const Vec2 force = c.normal_force * c.normal + c.shear_force * Vec2{c.normal.y, -c.normal.x};
     on_block += c.block_a == 1 ? force : -1.0 * force;
   }
@@ -83,18 +83,20 @@ TEST(Recorder, ContactsThatAreGivenSomeAtATimeAreThoseOfTheFrame) {
     for (int k = 0; k < 6; ++k) scene.rectangle({1.0 * k + 0.3 * (row % 2), 0.5 * row}, 1.0, 0.5);
   scene.setup.motions = {loading::GroundMotion("m", {0.0, 0.1}, {{4.0, 0.0}, {4.0, 0.0}})};
   scene.setup.time_step = scene.setup.output.contact_interval = 0.002;
-  scene.setup.stages = {stage("settle", StageKind::settle), stage("shaking", StageKind::shake)};
+  scene.setup.stages = {stage("settle", record::StageKind::settle),
+                        stage("shaking", record::StageKind::shake)};
   AllContacts observer;
-  std::vector<ContactRecord> given;
+  std::vector<record::ContactRecord> given;
   RunOptions options;
   options.after_step = [&](const Runner& runner, const dynamics::StepReport&) {
     given.clear();
-    runner.each_contact(
-        [&](std::span<const ContactRecord> some) { given.insert(given.end(), some.begin(), some.end()); });
+    runner.each_contact([&](std::span<const record::ContactRecord> some) {
+      given.insert(given.end(), some.begin(), some.end());
+    });
     EXPECT_EQ(given.size(), runner.contact_count());
   };
   run(scene.setup, options, observer);
-  const std::vector<ContactRecord>& kept = observer.frames.back().contacts;
+  const std::vector<record::ContactRecord>& kept = observer.frames.back().contacts;
   ASSERT_GT(kept.size(), 64U);
   ASSERT_EQ(given.size(), kept.size());
   double largest = 0.0;
@@ -110,9 +112,9 @@ TEST(Recorder, ContactsThatAreGivenSomeAtATimeAreThoseOfTheFrame) {
   EXPECT_NEAR(largest, 0.5 * (4.0 - g * std::tan(10.0 * degree)) * 0.01, 0.1 * 0.0113);
 }
 
-struct AllHistories final : RunObserver {
-  std::vector<HistoryRow> rows;
-  void history(const HistoryRow& row) override { rows.push_back(row); }
+struct AllHistories final : record::RunObserver {
+  std::vector<record::HistoryRow> rows;
+  void history(const record::HistoryRow& row) override { rows.push_back(row); }
 };
 
 // Three blocks beside each other fall freely; the first is excavated after two steps, the second after four.
@@ -128,7 +130,7 @@ TEST(Recorder, HistoriesFollowTheRockThatStaysLongestAndEndWithTheirBlock) {
       {"in the first", "", {0.5, 0.5}}, {"border 0-1", "", {1.0, 0.5}}, {"border 1-2", "", {2.0, 0.5}}};
   scene.setup.time_step = 0.001;
   for (int s = 0; s < 3; ++s) {
-    scene.setup.stages.push_back(stage("fall", StageKind::rest, 0.002));
+    scene.setup.stages.push_back(stage("fall", record::StageKind::rest, 0.002));
     if (s > 0) scene.setup.stages.back().excavate = {s - 1};
   }
   AllHistories observer;
@@ -152,13 +154,14 @@ TEST(Recorder, AbsoluteHistoriesHaveTheMotionOfTheFrame) {
   setup.histories = {{"relative", "", {0.5, 0.5}}, {"absolute", "", {0.5, 0.5}, true}};
   setup.motions = {loading::GroundMotion("m", {0.0, 0.3, 0.5}, {{0.0, 1.0}, {2.0, 0.0}, {1.0, -1.0}})};
   setup.time_step = 0.001;
-  for (const StageKind kind : {StageKind::shake, StageKind::rest, StageKind::shake}) {
+  for (const record::StageKind kind :
+       {record::StageKind::shake, record::StageKind::rest, record::StageKind::shake}) {
     setup.stages.push_back(stage("s", kind, 0.7));
-    setup.stages.back().scale = kind == StageKind::shake ? 2.0 : 1.0;
+    setup.stages.back().scale = kind == record::StageKind::shake ? 2.0 : 1.0;
   }
   AllHistories observer;
   run(setup, {}, observer);
-  for (const HistoryRow& row : observer.rows) {
+  for (const record::HistoryRow& row : observer.rows) {
     EXPECT_NEAR(row.points[1].ux, 0.0, 2e-6) << row.time;
     EXPECT_NEAR(row.points[1].uy, 0.0, 2e-6) << row.time;
     EXPECT_NEAR(row.points[1].vx, 0.0, 1e-12) << row.time;
@@ -181,13 +184,13 @@ TEST(Recorder, AccelerationIsTheMeanOverTheStep) {
     setup.motions = {loading::GroundMotion("m", {0.0, 0.5}, {{0.5, 1.0}, {1.5, -1.0}})};
     setup.time_step = 0.001;
     setup.output.history_interval = 0.003;
-    setup.stages = {stage("shaking", StageKind::shake, 0.3)};
+    setup.stages = {stage("shaking", record::StageKind::shake, 0.3)};
     setup.stages.back().scale = 2.0;
     AllHistories observer;
     run(setup, {}, observer);
     ASSERT_EQ(observer.rows.size(), 166U);
-    for (const HistoryRow& row : observer.rows) {
-      const HistoryRow::Point &relative = row.points[0], &absolute = row.points[1];
+    for (const record::HistoryRow& row : observer.rows) {
+      const record::HistoryRow::Point &relative = row.points[0], &absolute = row.points[1];
       const double middle = row.time - 0.0005;
       EXPECT_NEAR(absolute.ax - relative.ax, 2.0 * (0.5 + 2.0 * middle), 1e-9) << row.time;
       EXPECT_NEAR(absolute.ay - relative.ay, 2.0 * (1.0 - 4.0 * middle), 1e-9) << row.time;
@@ -208,13 +211,14 @@ TEST(Recorder, AbsoluteAccelerationOfABlockThatHoldsIsTheRecord) {
   setup.histories = {{"block", "", {0.0, 0.25}, true}, {"base", "", {0.0, -0.5}, true}};
   setup.motions = {loading::GroundMotion("m", {0.0, 0.4, 0.8}, {{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.0}})};
   setup.time_step = 0.001;
-  setup.stages = {stage("weight", StageKind::settle, 0.0), stage("shaking", StageKind::shake, 0.8)};
+  setup.stages = {stage("weight", record::StageKind::settle, 0.0),
+                  stage("shaking", record::StageKind::shake, 0.8)};
   AllHistories observer;
   run(setup, {}, observer);
   double largest = 0.0;
-  for (const HistoryRow& row : observer.rows) {
+  for (const record::HistoryRow& row : observer.rows) {
     if (row.time == 0.0) {
-      for (const HistoryRow::Point& p : row.points) EXPECT_EQ(p.ax == 0.0 && p.ay == 0.0, true);
+      for (const record::HistoryRow::Point& p : row.points) EXPECT_EQ(p.ax == 0.0 && p.ay == 0.0, true);
       continue;
     }
     const double middle = row.time - 0.0005, record = 1.0 - std::abs(middle - 0.4) / 0.4;

@@ -35,19 +35,19 @@ RunSetup shaken_incline(int shakings) {
   RunSetup setup = scene.setup;
   setup.time_step = 0.002;
   setup.motions.push_back(sine(0.5 * 9.81, 1.0, 2.0));
-  setup.stages.push_back(stage("settle", StageKind::settle));
-  for (int k = 0; k < shakings; ++k) setup.stages.push_back(stage("shake", StageKind::shake));
+  setup.stages.push_back(stage("settle", record::StageKind::settle));
+  for (int k = 0; k < shakings; ++k) setup.stages.push_back(stage("shake", record::StageKind::shake));
   setup.histories.push_back({"block", "b1", {0.3, 0.4}});
   return setup;
 }
 
-struct LastRecord final : RunObserver {
-  RunRecord record;
-  void end(const RunRecord& run) override { record = run; }
+struct LastRecord final : record::RunObserver {
+  record::RunRecord record;
+  void end(const record::RunRecord& run) override { record = run; }
 };
 
 /// Why a run cannot go on.
-std::string failure_of(const RunSetup& setup, RunObserver& observer) {
+std::string failure_of(const RunSetup& setup, record::RunObserver& observer) {
   try {
     run(setup, {}, observer);
   } catch (const RunError& error) {
@@ -58,7 +58,7 @@ std::string failure_of(const RunSetup& setup, RunObserver& observer) {
 
 double slid(int shakings) {
   LastHistory observer;
-  const RunRecord record = run(shaken_incline(shakings), {}, observer);
+  const record::RunRecord record = run(shaken_incline(shakings), {}, observer);
   EXPECT_EQ(record.open_close.unconverged_steps, 0);
   EXPECT_TRUE(record.stages[0].equilibrium_reached);
   EXPECT_LT(record.energy.residual_ratio, 0.01);
@@ -71,9 +71,9 @@ TEST(Run, RepeatedShakingGivesRepeatedSlip) {
   EXPECT_NEAR(slid(5) / (5.0 * once), 1.0, 5e-3);
 }
 
-struct AllSteps final : RunObserver {
-  std::vector<StepRow> rows;
-  void step(const StepRow& row) override { rows.push_back(row); }
+struct AllSteps final : record::RunObserver {
+  std::vector<record::StepRow> rows;
+  void step(const record::StepRow& row) override { rows.push_back(row); }
 };
 
 // Pseudo time steps begin at the time step and grow by a quarter after every step that converges at once, to fifty time steps.
@@ -81,11 +81,11 @@ TEST(Run, StaticStepsAreWrittenWithTheirPseudoTimeStep) {
   RunSetup setup = shaken_incline(1);
   setup.time_step = 0.02;  // s: a row of every step
   AllSteps observer;
-  const RunRecord record = run(setup, {}, observer);
+  const record::RunRecord record = run(setup, {}, observer);
   double longest = 0.0;
   ASSERT_GE(std::ssize(observer.rows), record.stages[0].steps);
   EXPECT_EQ(observer.rows[0].step_size, setup.time_step);
-  for (const StepRow& row : observer.rows) {
+  for (const record::StepRow& row : observer.rows) {
     if (row.stage == 0) {
       longest = std::max(longest, row.step_size);
     } else {
@@ -97,10 +97,11 @@ TEST(Run, StaticStepsAreWrittenWithTheirPseudoTimeStep) {
   EXPECT_EQ(observer.rows.back().step_size, setup.time_step);
 }
 
-void expect_equal_energies(const Energy& one, const Energy& other) {
+void expect_equal_energies(const record::Energy& one, const record::Energy& other) {
   for (const auto term :
-       {&Energy::kinetic, &Energy::strain, &Energy::gravity, &Energy::contact, &Energy::friction,
-        &Energy::damping, &Energy::radiated, &Energy::input, &Energy::numerical, &Energy::residual_ratio})
+       {&record::Energy::kinetic, &record::Energy::strain, &record::Energy::gravity, &record::Energy::contact,
+        &record::Energy::friction, &record::Energy::damping, &record::Energy::radiated,
+        &record::Energy::input, &record::Energy::numerical, &record::Energy::residual_ratio})
     EXPECT_EQ(one.*term, other.*term);
 }
 
@@ -112,20 +113,20 @@ TEST_P(ResumedRun, EndsInTheSameBits) {
   const FreshFolder folder;
   RunSetup setup = shaken_incline(5);
   if (GetParam()) setup.solver.linear = dynamics::LinearSolver::iterative;
-  RunObserver nobody;
-  const RunRecord whole = run(setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(setup, {}, nobody);
 
   Stopper stopper(3500);
   RunOptions options;
   options.directory = folder;
   options.stop = &stopper.stop;
-  const RunRecord part = run(setup, options, stopper);
+  const record::RunRecord part = run(setup, options, stopper);
   EXPECT_TRUE(part.interrupted);
   EXPECT_LT(part.steps, whole.steps);
 
   options.stop = nullptr;
   options.resume = true;
-  const RunRecord resumed = run(setup, options, nobody);
+  const record::RunRecord resumed = run(setup, options, nobody);
   EXPECT_EQ(resumed.state_hash, whole.state_hash);
   EXPECT_EQ(resumed.steps, whole.steps);
   EXPECT_EQ(resumed.stages.size(), whole.stages.size());
@@ -143,9 +144,9 @@ TEST(Run, AStageThatIsResumedWithinBeganWhenItDid) {
   const FreshFolder folder;
   RunSetup setup = shaken_incline(1);
   setup.motions = {sine(0.5 * 9.81, 1.0, 6.0)};
-  setup.stages.insert(setup.stages.begin() + 1, stage("rest", StageKind::rest, 1.0));
-  RunObserver nobody;
-  const RunRecord whole = run(setup, {}, nobody);
+  setup.stages.insert(setup.stages.begin() + 1, stage("rest", record::StageKind::rest, 1.0));
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(setup, {}, nobody);
   Stopper stopper(whole.steps - 100);
   RunOptions options;
   options.directory = folder;
@@ -155,7 +156,7 @@ TEST(Run, AStageThatIsResumedWithinBeganWhenItDid) {
   EXPECT_NEAR(read_checkpoint(folder, setup).mechanics.last_step, setup.time_step, 1e-9);
   options.stop = nullptr;
   options.resume = true;
-  const RunRecord resumed = run(setup, options, nobody);
+  const record::RunRecord resumed = run(setup, options, nobody);
   EXPECT_EQ(resumed.stages[2].start_time, 1.0);
   EXPECT_EQ(resumed.stages[2].start_time, whole.stages[2].start_time);
   EXPECT_EQ(resumed.state_hash, whole.state_hash);
@@ -166,8 +167,8 @@ TEST(Run, ResumesBeforeAnythingIsExcavated) {
   RunSetup setup = shaken_incline(2);
   setup.excavations.push_back({"above", {{0.0, 5.0}, {1.0, 5.0}, {1.0, 6.0}}});
   setup.stages.back().excavate = {0};
-  RunObserver nobody;
-  const RunRecord whole = run(setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(setup, {}, nobody);
   Stopper stopper(whole.stages[0].steps + 100);
   RunOptions options;
   options.directory = folder;
@@ -183,9 +184,9 @@ TEST(Run, ResumesBeforeAnythingIsExcavated) {
 TEST(Run, NoCheckpointWithinAStageAfterItsLastStep) {
   const FreshFolder folder;
   RunSetup setup = shaken_incline(0);
-  setup.stages.push_back(stage("rest", StageKind::rest, 2000 * setup.time_step));
-  RunObserver nobody;
-  const RunRecord whole = run(setup, {}, nobody);
+  setup.stages.push_back(stage("rest", record::StageKind::rest, 2000 * setup.time_step));
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(setup, {}, nobody);
   Stopper stopper(whole.steps);
   RunOptions options;
   options.directory = folder;
@@ -197,10 +198,10 @@ TEST(Run, NoCheckpointWithinAStageAfterItsLastStep) {
 }
 
 TEST(Run, ThatCannotGoOnHasNotReachedItsEnd) {
-  struct Failing final : RunObserver {
+  struct Failing final : record::RunObserver {
     bool interrupted = false;
-    void step(const StepRow&) override { throw RunError("the disk is full"); }
-    void end(const RunRecord& record) override { interrupted = record.interrupted; }
+    void step(const record::StepRow&) override { throw RunError("the disk is full"); }
+    void end(const record::RunRecord& record) override { interrupted = record.interrupted; }
   };
   Failing observer;
   EXPECT_THROW(run(shaken_incline(1), {}, observer), RunError);
@@ -211,7 +212,7 @@ TEST(Run, OtherFilesAreOtherInput) {
   const FreshFolder folder;
   RunSetup setup = shaken_incline(1);
   setup.files = {{"q.csv", "00ff"}};
-  RunObserver nobody;
+  record::RunObserver nobody;
   RunOptions options;
   options.directory = folder;
   run(setup, options, nobody);
@@ -222,20 +223,20 @@ TEST(Run, OtherFilesAreOtherInput) {
 
 // Blocks that overlap at the start are taken as they are: the joint between them is not pressed.
 TEST(Run, GapsAreThoseThatTheJointLawHas) {
-  struct LastContacts final : RunObserver {
-    ContactFrame last;
-    void contacts(const ContactFrame& frame) override { last = frame; }
+  struct LastContacts final : record::RunObserver {
+    record::ContactFrame last;
+    void contacts(const record::ContactFrame& frame) override { last = frame; }
   };
   Scene scene(1e9, 30.0);
   scene.rectangle({-2.0, -1.0}, 4.0, 1.0, 0.0, true);
   scene.rectangle({-0.5, -0.001}, 1.0, 0.5);
   RunSetup setup = scene.setup;
   setup.time_step = 0.002;
-  setup.stages = {stage("settle", StageKind::settle)};
+  setup.stages = {stage("settle", record::StageKind::settle)};
   LastContacts observer;
   run(setup, {}, observer);
   double force = 0.0;
-  for (const ContactRecord& contact : observer.last.contacts) {
+  for (const record::ContactRecord& contact : observer.last.contacts) {
     if (contact.normal_force <= 0.0) continue;
     force += contact.normal_force;
     EXPECT_LT(contact.gap, 0.0);
@@ -255,23 +256,23 @@ RunSetup shaken_wall() {
   RunSetup setup = scene.setup;
   setup.time_step = 0.002;
   setup.motions.push_back(sine(6.0, 2.0, 2.0));
-  setup.stages = {stage("settle", StageKind::settle), stage("shake", StageKind::shake),
-                  stage("rest", StageKind::rest, 0.5)};
+  setup.stages = {stage("settle", record::StageKind::settle), stage("shake", record::StageKind::shake),
+                  stage("rest", record::StageKind::rest, 0.5)};
   return setup;
 }
 
 // A run that is killed leaves no more than this of the stage it was in.
 TEST(Run, TellsWhatIsPlannedBeforeAStageBegins) {
-  struct Begun final : RunObserver {
-    ModelRecord model;
-    std::vector<StageRecord> stages;
-    void begin(const ModelRecord& record) override { model = record; }
-    void stage_begin(int, const StageRecord& record) override { stages.push_back(record); }
+  struct Begun final : record::RunObserver {
+    record::ModelRecord model;
+    std::vector<record::StageRecord> stages;
+    void begin(const record::ModelRecord& record) override { model = record; }
+    void stage_begin(int, const record::StageRecord& record) override { stages.push_back(record); }
   };
   RunSetup setup = shaken_incline(1);
-  setup.stages.push_back(stage("rest", StageKind::rest, 0.0041));
+  setup.stages.push_back(stage("rest", record::StageKind::rest, 0.0041));
   Begun begun;
-  const RunRecord record = run(setup, {}, begun);
+  const record::RunRecord record = run(setup, {}, begun);
   EXPECT_EQ(begun.model.stage_names, (std::vector<std::string>{"settle", "shake", "rest"}));
   EXPECT_EQ(begun.model.slip_limit, setup.damage.slip);
   ASSERT_EQ(begun.stages.size(), 3U);
@@ -286,16 +287,16 @@ TEST(Run, TellsWhatIsPlannedBeforeAStageBegins) {
   EXPECT_GT(begun.stages[1].pga, 1.0);
 }
 
-struct StopInRest final : RunObserver {
+struct StopInRest final : record::RunObserver {
   std::atomic<bool> stop = false;
-  void step(const StepRow& row) override { stop = row.stage == 2; }
+  void step(const record::StepRow& row) override { stop = row.stage == 2; }
 };
 
 // Of many contacts, the sum of their energies depends on its order.
 TEST(Run, AResumedRunHasTheSameEnergies) {
   const RunSetup setup = shaken_wall();
-  RunObserver nobody;
-  const RunRecord whole = run(setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(setup, {}, nobody);
   StopInRest stopper;
   expect_equal_energies(resumed_run(setup, stopper).energy, whole.energy);
 }
@@ -321,20 +322,20 @@ TEST(Run, StoredEnergiesArePartOfTheState) {
 // All linear solvers solve the same problem. Before anything slides for good, they differ by no more than tolerances do.
 TEST(Run, LinearSolversAgree) {
   RunSetup setup = shaken_wall();
-  setup.stages = {stage("settle", StageKind::settle), stage("shake", StageKind::shake)};
+  setup.stages = {stage("settle", record::StageKind::settle), stage("shake", record::StageKind::shake)};
   setup.stages[1].duration = 0.1;
   setup.histories.push_back({"top", "", {2.0, 2.4}});
-  std::vector<HistoryRow::Point> ends;
+  std::vector<record::HistoryRow::Point> ends;
   for (const auto linear : {dynamics::LinearSolver::direct, dynamics::LinearSolver::block,
                             dynamics::LinearSolver::iterative, dynamics::LinearSolver::automatic}) {
     setup.solver.linear = linear;
     LastHistory observer;
-    const RunRecord record = run(setup, {}, observer);
+    const record::RunRecord record = run(setup, {}, observer);
     EXPECT_EQ(record.open_close.unconverged_steps, 0);
     ends.push_back(observer.last.points[0]);
   }
   EXPECT_GT(std::abs(ends[0].vx), 1e-3);
-  for (const HistoryRow::Point& end : ends) {
+  for (const record::HistoryRow::Point& end : ends) {
     EXPECT_NEAR(end.ux, ends[0].ux, 1e-7);
     EXPECT_NEAR(end.uy, ends[0].uy, 1e-7);
     EXPECT_NEAR(end.vx, ends[0].vx, 1e-5);
@@ -344,10 +345,10 @@ TEST(Run, LinearSolversAgree) {
 // The same bits on every rerun, for any number of threads and from every build, and as long as nobody changes the
 // mechanics: whoever does so on purpose puts the new value here.
 TEST(Run, GoldenStateHash) {
-  RunObserver nobody;
+  record::RunObserver nobody;
   RunOptions two;
   two.threads = 2;
-  const RunRecord record = run(shaken_wall(), {}, nobody);
+  const record::RunRecord record = run(shaken_wall(), {}, nobody);
   EXPECT_EQ(record.open_close.unconverged_steps, 0);
   EXPECT_EQ(record.state_hash, "4d61b85e2a8154a6");
   EXPECT_EQ(run(shaken_wall(), two, nobody).state_hash, record.state_hash);
@@ -374,7 +375,7 @@ RunSetup pressed_block(double young) {
   scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
   scene.rectangle({0.0, 1.0}, 1.0, 1.0);
   scene.setup.time_step = 0.002;
-  scene.setup.stages.push_back(stage("settle", StageKind::settle));
+  scene.setup.stages.push_back(stage("settle", record::StageKind::settle));
   scene.setup.stages.back().max_steps = 20;
   return scene.setup;
 }
@@ -394,7 +395,7 @@ TEST(Run, EndsWithAStageOfWhichNoStepConverges) {
   setup.time_step = 0.002;
   setup.properties[1].spin = 250.0;
   setup.solver.max_halvings = 0;
-  setup.stages.push_back(stage("turn", StageKind::rest, 0.002));
+  setup.stages.push_back(stage("turn", record::StageKind::rest, 0.002));
   LastRecord last;
   EXPECT_EQ(failure_of(setup, last),
             "no step of stage 'turn' converged, of 1 from step 1 of the run on; the results up to there "
@@ -411,11 +412,11 @@ TEST(Run, GoesOnWhereSingleStepsDoNotConverge) {
   scene.rectangle({0.0, 0.05}, 1.0, 0.5, 5.0);
   RunSetup setup = scene.setup;
   setup.time_step = 0.002;
-  setup.stages.push_back(stage("fall", StageKind::rest, 0.3));
+  setup.stages.push_back(stage("fall", record::StageKind::rest, 0.3));
   setup.solver.max_iterations = 1;
   setup.solver.max_halvings = 0;
-  RunObserver nobody;
-  const RunRecord record = run(setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord record = run(setup, {}, nobody);
   EXPECT_GT(record.open_close.unconverged_steps, 0);
   EXPECT_LT(record.open_close.unconverged_steps, record.steps);
 }
@@ -423,7 +424,7 @@ TEST(Run, GoesOnWhereSingleStepsDoNotConverge) {
 TEST(Run, EndsWhereEnergiesAreNoNumbers) {
   LastRecord last;
   RunSetup setup = pressed_block(1e300);
-  setup.stages = {stage("rest", StageKind::rest, 0.04)};
+  setup.stages = {stage("rest", record::StageKind::rest, 0.04)};
   EXPECT_EQ(
       failure_of(setup, last),
       "the energies after step 10 of stage 'rest' are no finite numbers; the results up to there are kept");

@@ -20,24 +20,27 @@ RunSetup three_stages() {
   scene.setup.excavations.push_back({"beside", {{1.0, 0.0}, {2.0, 0.0}, {2.0, 0.5}, {1.0, 0.5}}});
   scene.setup.time_step = 0.002;
   scene.setup.properties[1].velocity = {0.3, 0.0};
-  scene.setup.stages = {stage("settle", StageKind::settle), stage("open", StageKind::rest, 0.1),
-                        stage("rest", StageKind::rest, 0.1)};
+  scene.setup.stages = {stage("settle", record::StageKind::settle),
+                        stage("open", record::StageKind::rest, 0.1),
+                        stage("rest", record::StageKind::rest, 0.1)};
   scene.setup.stages[1].excavate = {0};
   return scene.setup;
 }
 
 /// What an observer was told, in order.
-struct Told final : RunObserver {
+struct Told final : record::RunObserver {
   std::vector<std::string> calls;
   int ends = 0;
-  RunRecord last;
-  void begin(const ModelRecord&) override { calls.emplace_back("begin"); }
-  void resume(const Reported&) override { calls.emplace_back("resume"); }
-  void stage_begin(int k, const StageRecord&) override { calls.push_back("stage " + std::to_string(k)); }
-  void stage_end(int k, const StageRecord& record) override {
+  record::RunRecord last;
+  void begin(const record::ModelRecord&) override { calls.emplace_back("begin"); }
+  void resume(const record::Reported&) override { calls.emplace_back("resume"); }
+  void stage_begin(int k, const record::StageRecord&) override {
+    calls.push_back("stage " + std::to_string(k));
+  }
+  void stage_end(int k, const record::StageRecord& record) override {
     calls.push_back((record.interrupted ? "interrupted " : "ended ") + std::to_string(k));
   }
-  void end(const RunRecord& record) override {
+  void end(const record::RunRecord& record) override {
     calls.emplace_back("end");
     ++ends;
     last = record;
@@ -46,8 +49,8 @@ struct Told final : RunObserver {
 
 TEST(Runner, StepByStepEndsInTheSameBits) {
   const RunSetup setup = three_stages();
-  RunObserver nobody;
-  const RunRecord whole = run(setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(setup, {}, nobody);
   Told told;
   Runner runner(setup, {}, told);
   long steps = 0;
@@ -61,7 +64,7 @@ TEST(Runner, StepByStepEndsInTheSameBits) {
     stages += advance.ended_stage;
     EXPECT_EQ(runner.stage(), stages);
   }
-  const RunRecord record = runner.finish();
+  const record::RunRecord record = runner.finish();
   EXPECT_EQ(record.state_hash, whole.state_hash);
   EXPECT_EQ(record.steps, whole.steps);
   EXPECT_EQ(steps, whole.steps);
@@ -76,7 +79,7 @@ TEST(Runner, ThatIsDoneDoesNothing) {
   Told told;
   Runner runner(setup, {}, told);
   while (!runner.done()) runner.advance();
-  const RunRecord record = runner.finish();
+  const record::RunRecord record = runner.finish();
   const Advance more = runner.advance();
   EXPECT_FALSE(more.took_step);
   EXPECT_FALSE(more.ended_stage);
@@ -87,16 +90,16 @@ TEST(Runner, ThatIsDoneDoesNothing) {
 
 TEST(Runner, ShowsStateModelAndContactsBetweenSteps) {
   const RunSetup setup = three_stages();
-  RunObserver nobody;
+  record::RunObserver nobody;
   Runner runner(setup, {}, nobody);
   EXPECT_EQ(runner.contact_count(), 0U);
   while (runner.stage() == 0) runner.advance();
   EXPECT_EQ(runner.model().surface.present[2], 1);
   double force = 0.0;
   std::size_t contacts = 0;
-  runner.each_contact([&](std::span<const ContactRecord> some) {
+  runner.each_contact([&](std::span<const record::ContactRecord> some) {
     contacts += some.size();
-    for (const ContactRecord& contact : some)
+    for (const record::ContactRecord& contact : some)
       if (contact.block_a + contact.block_b == 1) force += contact.normal_force;
   });
   EXPECT_EQ(contacts, runner.contact_count());
@@ -110,8 +113,8 @@ TEST(Runner, ShowsStateModelAndContactsBetweenSteps) {
 
 TEST(Runner, CallsBackAfterEveryStep) {
   const RunSetup setup = three_stages();
-  RunObserver nobody;
-  const RunRecord whole = run(setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(setup, {}, nobody);
   std::vector<long> steps;
   long iterations = 0;
   std::size_t most_contacts = 0;
@@ -122,7 +125,7 @@ TEST(Runner, CallsBackAfterEveryStep) {
     most_contacts = std::max(most_contacts, runner.contact_count());
     EXPECT_FALSE(runner.done());
   };
-  const RunRecord record = run(setup, options, nobody);
+  const record::RunRecord record = run(setup, options, nobody);
   EXPECT_EQ(record.state_hash, whole.state_hash);
   ASSERT_EQ(std::ssize(steps), whole.steps);
   for (std::size_t k = 0; k < steps.size(); ++k) EXPECT_EQ(steps[k], static_cast<long>(k) + 1);
@@ -134,8 +137,8 @@ TEST(Runner, CallsBackAfterEveryStep) {
 TEST(Runner, ThatIsFinishedInAStageIsResumedToTheSameBits) {
   const FreshFolder folder;
   const RunSetup setup = three_stages();
-  RunObserver nobody;
-  const RunRecord whole = run(setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(setup, {}, nobody);
   RunOptions options;
   options.directory = folder;
   Told told;
@@ -143,7 +146,7 @@ TEST(Runner, ThatIsFinishedInAStageIsResumedToTheSameBits) {
     Runner runner(setup, options, told);
     while (runner.stage() < 2) runner.advance();
     runner.advance();
-    const RunRecord part = runner.finish();
+    const record::RunRecord part = runner.finish();
     EXPECT_TRUE(part.interrupted);
     EXPECT_TRUE(runner.done());
     ASSERT_EQ(part.stages.size(), 3U);
@@ -202,7 +205,7 @@ TEST(Runner, FailsOnceAndTellsTheObserver) {
 TEST(Runner, RefusesRockThatYieldsWithoutLimit) {
   RunSetup setup = three_stages();
   for (BlockProperties& properties : setup.properties) properties.material.young = 1.0;
-  RunObserver nobody;
+  record::RunObserver nobody;
   EXPECT_THROW(Runner(setup, {}, nobody), RunError);
 }
 

@@ -28,7 +28,7 @@ loading::GroundMotion wavelet(Vec2 direction, double peak) {
 }
 
 /// Four by five blocks of soft rock, glued together: 20 m wide and high, on a half-space.
-RunSetup ground(Sides sides = Sides::free_field) {
+RunSetup ground(record::Sides sides = record::Sides::free_field) {
   Scene scene(rock_young, 40.0, rock_density);
   for (int row = 0; row < 5; ++row) {
     for (int column = 0; column < 4; ++column) scene.rectangle({5.0 * column, 4.0 * row}, 5.0, 4.0);
@@ -47,24 +47,24 @@ RunSetup ground(Sides sides = Sides::free_field) {
   boundary.dashpots = rock.impedance();
   setup.boundary = boundary;
   setup.motions = {wavelet({0.8, 0.6}, 3.0)};
-  setup.stages = {stage("settle", StageKind::settle), stage("shake", StageKind::shake),
-                  stage("after", StageKind::rest, 0.1), stage("again", StageKind::settle)};
+  setup.stages = {stage("settle", record::StageKind::settle), stage("shake", record::StageKind::shake),
+                  stage("after", record::StageKind::rest, 0.1), stage("again", record::StageKind::settle)};
   return setup;
 }
 
-RunRecord ground_run(const RunSetup& setup, const RunOptions& options = {}) {
-  RunObserver nobody;
+record::RunRecord ground_run(const RunSetup& setup, const RunOptions& options = {}) {
+  record::RunObserver nobody;
   return run(setup, options, nobody);
 }
 
 /// The run, which has the same bits by two threads, and after an interruption within the shaking.
-RunRecord run_with_the_same_bits(const RunSetup& setup) {
-  RunRecord whole = ground_run(setup);
+record::RunRecord run_with_the_same_bits(const RunSetup& setup) {
+  record::RunRecord whole = ground_run(setup);
   RunOptions two;
   two.threads = 2;
   EXPECT_EQ(ground_run(setup, two).state_hash, whole.state_hash);
   Stopper stopper(whole.stages[0].steps + 250);
-  const RunRecord resumed = resumed_run(setup, stopper);
+  const record::RunRecord resumed = resumed_run(setup, stopper);
   EXPECT_EQ(resumed.state_hash, whole.state_hash);
   EXPECT_EQ(resumed.energy.radiated, whole.energy.radiated);
   EXPECT_EQ(resumed.energy.damping, whole.energy.damping);
@@ -83,7 +83,7 @@ TEST(SeismicBoundary, HistoriesFollowTheRockOnEitherSide) {
   EXPECT_EQ(column_heights(setup, ColumnSide::left).ground, 20.0);
   EXPECT_EQ(column_heights(setup, ColumnSide::right).ground, 16.0);
   EXPECT_EQ(column_heights(setup, ColumnSide::right).base, 0.0);
-  setup.stages = {stage("shake", StageKind::shake)};
+  setup.stages = {stage("shake", record::StageKind::shake)};
   setup.histories = {{"left", "", {0.0, 15.0}, false, ColumnSide::left},
                      {"right", "", {0.0, 15.0}, false, ColumnSide::right}};
   LastHistory histories;
@@ -91,7 +91,7 @@ TEST(SeismicBoundary, HistoriesFollowTheRockOnEitherSide) {
   RunOptions options;
   options.after_step = [&](const Runner& runner, const dynamics::StepReport&) {
     ASSERT_EQ(histories.last.points.size(), 2u);
-    const HistoryRow::Point &left = histories.last.points[0], &right = histories.last.points[1];
+    const record::HistoryRow::Point &left = histories.last.points[0], &right = histories.last.points[1];
     const dynamics::GroundMove on_left = far_ground(runner.model(), runner.state(), {0.0, 15.0}),
                                on_right = far_ground(runner.model(), runner.state(), {20.0, 15.0});
     EXPECT_EQ(left.ux, on_left.displacement.x);
@@ -110,7 +110,7 @@ TEST(SeismicBoundary, CountsDamageAgainstTheGroundFarAway) {
   RunSetup setup = ground();
   setup.motions = {wavelet({1.0, 0.0}, 10.0)};
   setup.gravity = {};
-  setup.stages = {stage("shake", StageKind::shake), stage("after", StageKind::rest, 1.0)};
+  setup.stages = {stage("shake", record::StageKind::shake), stage("after", record::StageKind::rest, 1.0)};
   double sway = 0.0;
   RunOptions options;
   options.after_step = [&](const Runner& runner, const dynamics::StepReport&) {
@@ -118,9 +118,9 @@ TEST(SeismicBoundary, CountsDamageAgainstTheGroundFarAway) {
     sway =
         std::max(sway, std::abs(runner.state().position[top.first] / std::sqrt(top.area) - top.centroid.x));
   };
-  const RunRecord record = ground_run(setup, options);
+  const record::RunRecord record = ground_run(setup, options);
   EXPECT_GT(sway, 0.013);
-  for (const StageRecord& s : record.stages) {
+  for (const record::StageRecord& s : record.stages) {
     EXPECT_EQ(s.damage.loosened_area, 0.0) << s.stage.name;
     EXPECT_LT(s.damage.displacement_max, 1e-3) << s.stage.name;
   }
@@ -128,8 +128,9 @@ TEST(SeismicBoundary, CountsDamageAgainstTheGroundFarAway) {
 
 // Waves carry away what the shaking brings, and the books balance.
 TEST(SeismicBoundary, AccountsForWhatItTakes) {
-  for (const Sides sides : {Sides::free_field, Sides::viscous, Sides::roller}) {
-    const RunRecord record = ground_run(ground(sides));
+  for (const record::Sides sides :
+       {record::Sides::free_field, record::Sides::viscous, record::Sides::roller}) {
+    const record::RunRecord record = ground_run(ground(sides));
     EXPECT_LT(record.energy.residual_ratio, 1e-4);
     EXPECT_GT(record.energy.radiated, 0.0);
     EXPECT_FALSE(record.interrupted);
@@ -156,7 +157,7 @@ TEST(SeismicBoundary, TakesDampingAgainstTheGroundFarAway) {
   RunSetup setup = ground();
   setup.solver.rock_damping = setup.solver.contact_damping = 0.0;
   setup.solver.damping = {0.05, 3.0, dynamics::DampingKind::rayleigh};
-  const RunRecord whole = run_with_the_same_bits(setup);
+  const record::RunRecord whole = run_with_the_same_bits(setup);
   EXPECT_LT(whole.energy.residual_ratio, 1e-4);
   EXPECT_GT(whole.energy.damping, 0.0);
 }
@@ -169,8 +170,8 @@ TEST(SeismicBoundary, LeavesTheGroundItsMotion) {
     setup.gravity = {};
     setup.solver.rock_damping = setup.solver.contact_damping = 0.0;
     setup.solver.damping = damping;
-    setup.stages = {stage("shake", StageKind::shake)};
-    const RunRecord record = ground_run(setup);
+    setup.stages = {stage("shake", record::StageKind::shake)};
+    const record::RunRecord record = ground_run(setup);
     return record.energy.damping / record.energy.radiated;
   };
   EXPECT_LT(largest_damping(dynamics::RayleighDamping{0.5, 3.0, dynamics::DampingKind::mass}), 1e-4);
@@ -184,13 +185,13 @@ TEST(SeismicBoundary, DampingAgainstTheBaseSlowsFalls) {
   RunSetup setup = std::move(scene.setup);
   setup.time_step = 0.01;
   setup.solver.damping = {0.2, 3.0, dynamics::DampingKind::mass};
-  setup.stages = {stage("fall", StageKind::rest, 3.0)};
+  setup.stages = {stage("fall", record::StageKind::rest, 3.0)};
   double speed = 0.0;
   RunOptions options;
   options.after_step = [&](const Runner& runner, const dynamics::StepReport&) {
     speed = -runner.state().velocity[1];
   };
-  const RunRecord record = ground_run(setup, options);
+  const record::RunRecord record = ground_run(setup, options);
   EXPECT_NEAR(speed, 9.81 / setup.solver.damping->mass_rate(), 1e-6);
   EXPECT_LT(record.energy.residual_ratio, 1e-9);
 }
@@ -219,7 +220,7 @@ TEST(SeismicBoundary, StandsOnTheSidesOfTheModel) {
 // The top of a deep model is under the weight above, which the stress of the rock holds: nothing moves.
 TEST(SeismicBoundary, HoldsTheStressThatWasThere) {
   RunSetup setup = ground();
-  InSituStress stress;
+  block::InSituStress stress;
   stress.syy = -1e6;
   stress.sxx = -0.5e6;
   stress.sxy = 0.1e6;

@@ -21,15 +21,15 @@ TEST(Settling, NamesTheBlockThatMovesAndLetsItFall) {
   scene.rectangle({1.2, 1.0}, 0.6, 0.4);
   RunSetup setup = scene.setup;
   setup.time_step = 0.002;
-  setup.stages = {stage("settle", StageKind::settle), stage("fall", StageKind::rest, 1.0)};
-  RunObserver nobody;
-  const RunRecord record = run(setup, {}, nobody);
+  setup.stages = {stage("settle", record::StageKind::settle), stage("fall", record::StageKind::rest, 1.0)};
+  record::RunObserver nobody;
+  const record::RunRecord record = run(setup, {}, nobody);
   ASSERT_EQ(record.stages[0].moving.size(), 1u);
   EXPECT_EQ(record.stages[0].moving[0].block, 3);
   EXPECT_NEAR(record.stages[0].moving[0].carried, 0.0, 0.01);
   EXPECT_TRUE(record.stages[0].equilibrium_reached);
   EXPECT_LE(record.stages[0].worst_residual_ratio, 1e-4);
-  EXPECT_EQ(verdict_text(record.stages[0]), "1 block falling");
+  EXPECT_EQ(record::verdict_text(record.stages[0]), "1 block falling");
   EXPECT_LT(record.max_overlap.depth, 1e-3);
 }
 
@@ -42,11 +42,11 @@ TEST(Settling, WhatClosesUnderItsLoadIsNotMoving) {
   for (int k = 0; k < 10; ++k) scene.rectangle({0.0, 1.0 * k}, 1.0, 1.0);
   RunSetup setup = scene.setup;
   setup.time_step = 0.002;
-  setup.stages = {stage("settle", StageKind::settle)};
+  setup.stages = {stage("settle", record::StageKind::settle)};
   setup.stages[0].tolerance = 1e-3;
   setup.histories.push_back({"top", "b10", {0.5, 9.5}});
   LastHistory observer;
-  const RunRecord record = run(setup, {}, observer);
+  const record::RunRecord record = run(setup, {}, observer);
   EXPECT_TRUE(record.stages[0].equilibrium_reached);
   EXPECT_TRUE(record.stages[0].moving.empty());
   EXPECT_NEAR(observer.last.points[0].uy, -55.0 * weight / stiffness, 2e-3 * 55.0 * weight / stiffness);
@@ -70,11 +70,11 @@ TEST(Settling, ABlockOnSupportsIsNeverCalledMoving) {
   load.from = {8.0, 0.0};
   load.value = {0.0, -0.3};
   setup.loads.push_back(load);
-  setup.stages.push_back(stage("settle", StageKind::settle));
+  setup.stages.push_back(stage("settle", record::StageKind::settle));
   setup.stages.back().tolerance = 1e-8;
   setup.histories.push_back({"tip", "b0", {8.0, 0.0}});
   LastHistory observer;
-  const RunRecord record = run(setup, {}, observer);
+  const record::RunRecord record = run(setup, {}, observer);
   EXPECT_TRUE(record.stages[0].equilibrium_reached);
   EXPECT_TRUE(record.stages[0].moving.empty());
   EXPECT_LT(record.stages[0].worst_residual_ratio, 1e-8);
@@ -82,14 +82,14 @@ TEST(Settling, ABlockOnSupportsIsNeverCalledMoving) {
 }
 
 /// How a stage of settling ends.
-StageRecord settle(RunSetup setup) {
-  setup.stages = {stage("settle", StageKind::settle)};
-  RunObserver nobody;
+record::StageRecord settle(RunSetup setup) {
+  setup.stages = {stage("settle", record::StageKind::settle)};
+  record::RunObserver nobody;
   return run(setup, {}, nobody).stages[0];
 }
 
 /// How a straight column of 20 m × 1 m stands under a share of its buckling load, Euler: π² E h³ / (48 L²).
-Standing column_under(double share, int order, bool automatic = false) {
+record::Standing column_under(double share, int order, bool automatic = false) {
   Scene scene(1e9, 30.0);
   scene.rectangle({0.0, 0.0}, 1.0, 20.0, 0.0, false, order);
   RunSetup setup = scene.setup;
@@ -110,17 +110,17 @@ Standing column_under(double share, int order, bool automatic = false) {
   load.to = {0.0, 20.0};
   load.value = load.value_end = {0.0, -share * std::numbers::pi * std::numbers::pi * 1e9 / (48.0 * 400.0)};
   setup.loads.push_back(load);
-  return standing_of(settle(setup), {}, false);
+  return record::standing_of(settle(setup), {}, false);
 }
 
 // Blocks of low orders, which the program may have chosen, bend too little or not at all, and balance under any load.
 TEST(Settling, AColumnBeyondItsBucklingLoadDoesNotStandAtAnyOrder) {
   for (const int order : {1, 2, 3}) {
-    EXPECT_EQ(column_under(0.95, order), Standing::stands) << order;
-    EXPECT_EQ(column_under(1.05, order), Standing::unstable) << order;
+    EXPECT_EQ(column_under(0.95, order), record::Standing::stands) << order;
+    EXPECT_EQ(column_under(1.05, order), record::Standing::unstable) << order;
   }
-  EXPECT_EQ(column_under(0.95, 1, true), Standing::stands);
-  EXPECT_EQ(column_under(1.05, 1, true), Standing::unstable);
+  EXPECT_EQ(column_under(0.95, 1, true), record::Standing::stands);
+  EXPECT_EQ(column_under(1.05, 1, true), record::Standing::unstable);
 }
 
 // Rock beside it holds a slender block, whose contacts the test has to know.
@@ -136,8 +136,8 @@ TEST(Settling, ASlenderBlockBetweenOthersIsStable) {
   RunSetup setup = scene.setup;
   setup.gravity = {0.0, 0.0};
   setup.time_step = 1.0;
-  setup.in_situ = InSituStress{.sxx = -pressed, .syy = -pressed};
-  EXPECT_EQ(standing_of(settle(setup), {}, false), Standing::stands);
+  setup.in_situ = block::InSituStress{.sxx = -pressed, .syy = -pressed};
+  EXPECT_EQ(record::standing_of(settle(setup), {}, false), record::Standing::stands);
 }
 
 // Without gravity, a block that only its neighbour loads is in balance when the neighbour is.
@@ -156,7 +156,7 @@ TEST(Settling, EndsWithoutGravity) {
   load.to = {0.0, 3.0};
   load.value = load.value_end = {0.0, -1e4};
   setup.loads.push_back(load);
-  const StageRecord settled = settle(setup);
+  const record::StageRecord settled = settle(setup);
   EXPECT_TRUE(settled.equilibrium_reached);
   EXPECT_LT(settled.steps, 200);
 }
@@ -170,8 +170,8 @@ TEST(Settling, IsMeasuredByInSituStressWithoutGravity) {
   RunSetup setup = scene.setup;
   setup.gravity = {0.0, 0.0};
   setup.time_step = 0.002;
-  setup.in_situ = InSituStress{.sxx = -1e6, .syy = -2e6};
-  const StageRecord settled = settle(setup);
+  setup.in_situ = block::InSituStress{.sxx = -1e6, .syy = -2e6};
+  const record::StageRecord settled = settle(setup);
   EXPECT_TRUE(settled.equilibrium_reached);
   EXPECT_LT(settled.worst_residual_ratio, 1e-4);
 }
@@ -186,7 +186,7 @@ TEST(Settling, FusedRockMayBePulled) {
     for (cutting::EdgeLabel& label : block.labels[0]) label.kind = cutting::EdgeKind::excavation;
   }
   setup.time_step = 0.002;
-  setup.in_situ = InSituStress{.syy = 1e4, .sxy = 1e3};
+  setup.in_situ = block::InSituStress{.syy = 1e4, .sxy = 1e3};
   EXPECT_TRUE(settle(setup).equilibrium_reached);
 }
 
@@ -202,12 +202,12 @@ RunSetup on_incline(double friction) {
 
 // Within 0.04 % of the limit, on both sides of it.
 TEST(Settling, TellsABlockThatSlidesFromOneThatHolds) {
-  const StageRecord slides = settle(on_incline(29.99)), holds = settle(on_incline(30.01));
-  EXPECT_EQ(verdict_text(slides), "mechanism of 1 block");
+  const record::StageRecord slides = settle(on_incline(29.99)), holds = settle(on_incline(30.01));
+  EXPECT_EQ(record::verdict_text(slides), "mechanism of 1 block");
   EXPECT_LT(slides.steps, 30);
   ASSERT_EQ(slides.moving.size(), 1u);
   EXPECT_GT(slides.moving[0].carried, 0.99);
-  EXPECT_EQ(verdict_text(holds), "in equilibrium");
+  EXPECT_EQ(record::verdict_text(holds), "in equilibrium");
   EXPECT_LT(holds.steps, 15);
 }
 
@@ -222,9 +222,9 @@ TEST(Settling, BlocksThatMoveTogetherAreOneMechanism) {
     scene.setup.gravity = {-slope * g, -g};
     return settle(scene.setup);
   };
-  EXPECT_EQ(verdict_text(leaning(0.249)), "in equilibrium");
-  const StageRecord tips = leaning(0.251);
-  EXPECT_EQ(verdict_text(tips), "mechanism of 2 blocks");
+  EXPECT_EQ(record::verdict_text(leaning(0.249)), "in equilibrium");
+  const record::StageRecord tips = leaning(0.251);
+  EXPECT_EQ(record::verdict_text(tips), "mechanism of 2 blocks");
 }
 
 // Weightless, pushed over its edge by a load on its side: nothing but contacts measures the blocks beside it.
@@ -246,7 +246,8 @@ TEST(Settling, FindsWhatMovesWithoutGravity) {
     setup.loads = {load};
     return settle(setup);
   };
-  EXPECT_EQ(verdict_of(pushed(0.24)), Verdict::equilibrium);  // tips at 1/4: 2 m high, 1 m wide
+  EXPECT_EQ(record::verdict_of(pushed(0.24)),
+            record::Verdict::equilibrium);  // tips at 1/4: 2 m high, 1 m wide
   EXPECT_EQ(pushed(0.26).moving.size(), 2u);
 }
 
@@ -276,9 +277,9 @@ TEST(Settling, ASlenderColumnBendsAsFarAsItsThrustDemands) {
   load.value = load.value_end = {-thrust, lateral};
   setup.loads.push_back(load);
   setup.histories.push_back({"tip", "b0", {length, 0.0}});
-  setup.stages = {stage("settle", StageKind::settle)};
+  setup.stages = {stage("settle", record::StageKind::settle)};
   LastHistory observer;
-  const StageRecord settled = run(setup, {}, observer).stages[0];
+  const record::StageRecord settled = run(setup, {}, observer).stages[0];
   const double k = std::sqrt(thrust / stiffness);
   EXPECT_TRUE(settled.equilibrium_reached);
   EXPECT_LE(settled.steps, 12);
@@ -294,10 +295,10 @@ TEST(Settling, TakesOutTheEnergyOfMotion) {
   scene.setup.properties[1].velocity = {0.1, 0.0};
   RunSetup setup = scene.setup;
   setup.time_step = 0.002;
-  setup.stages = {stage("fall", StageKind::rest, 0.2), stage("settle", StageKind::settle)};
+  setup.stages = {stage("fall", record::StageKind::rest, 0.2), stage("settle", record::StageKind::settle)};
   setup.stages.back().max_steps = 5;
-  RunObserver nobody;
-  const RunRecord record = run(setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord record = run(setup, {}, nobody);
   EXPECT_LT(record.energy.residual_ratio, 1e-9);
   EXPECT_LT(record.energy.kinetic, 1e-9);
 }

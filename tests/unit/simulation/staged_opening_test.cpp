@@ -26,13 +26,13 @@ Scene pressed_blocks() {
   scene.setup.system.blocks[8].excavations = {0};
   scene.setup.excavations.push_back({"middle", {{1.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {1.0, 2.0}}});
   scene.setup.gravity = {};
-  scene.setup.in_situ = InSituStress{.sxx = -1e6, .syy = -1e6};
+  scene.setup.in_situ = block::InSituStress{.sxx = -1e6, .syy = -1e6};
   scene.setup.time_step = 0.002;
   return scene;
 }
 
-Stage opens(const char* name, double share, int parts) {
-  Stage s = stage(name, StageKind::settle);
+record::Stage opens(const char* name, double share, int parts) {
+  record::Stage s = stage(name, record::StageKind::settle);
   s.tolerance = 1e-7;
   s.excavate = {0};
   s.release = {{0, share}};
@@ -40,29 +40,29 @@ Stage opens(const char* name, double share, int parts) {
   return s;
 }
 
-Stage releases(const char* name, double share, int parts) {
-  Stage s = opens(name, share, parts);
+record::Stage releases(const char* name, double share, int parts) {
+  record::Stage s = opens(name, share, parts);
   s.excavate.clear();
   return s;
 }
 
-Stage settles() {
-  Stage s = stage("in place", StageKind::settle);
+record::Stage settles() {
+  record::Stage s = stage("in place", record::StageKind::settle);
   s.tolerance = 1e-7;
   return s;
 }
 
-RunRecord run_of(const RunSetup& setup) {
-  RunObserver nobody;
+record::RunRecord run_of(const RunSetup& setup) {
+  record::RunObserver nobody;
   return run(setup, {}, nobody);
 }
 
 TEST(StagedOpening, NothingReleasedMovesNothing) {
   Scene scene = pressed_blocks();
   scene.setup.stages = {settles(), opens("open", 0.0, 10)};
-  const RunRecord record = run_of(scene.setup);
+  const record::RunRecord record = run_of(scene.setup);
   ASSERT_EQ(record.stages.size(), 2);
-  const StageRecord& open = record.stages[1];
+  const record::StageRecord& open = record.stages[1];
   EXPECT_TRUE(open.equilibrium_reached);
   EXPECT_LT(open.damage.displacement_max, 1e-9);
   ASSERT_EQ(open.release.size(), 2);
@@ -73,12 +73,12 @@ TEST(StagedOpening, NothingReleasedMovesNothing) {
 TEST(StagedOpening, PartsSumToTheWhole) {
   Scene scene = pressed_blocks();
   scene.setup.stages = {settles(), opens("open", 0.4, 10)};
-  const std::vector<ReleasePoint> in_parts = run_of(scene.setup).stages[1].release;
+  const std::vector<record::ReleasePoint> in_parts = run_of(scene.setup).stages[1].release;
   scene.setup.stages[1].release_steps = 1;
-  const std::vector<ReleasePoint> at_once = run_of(scene.setup).stages[1].release;
+  const std::vector<record::ReleasePoint> at_once = run_of(scene.setup).stages[1].release;
   scene.setup.stages[1].release[0].second = 0.1;
   scene.setup.stages.push_back(releases("more", 0.4, 3));
-  const std::vector<ReleasePoint> in_stages = run_of(scene.setup).stages[2].release;
+  const std::vector<record::ReleasePoint> in_stages = run_of(scene.setup).stages[2].release;
   ASSERT_EQ(in_parts.size(), 11);
   ASSERT_EQ(at_once.size(), 2);
   ASSERT_EQ(in_stages.size(), 3);
@@ -95,13 +95,13 @@ TEST(StagedOpening, PartsSumToTheWhole) {
 TEST(StagedOpening, AllReleasedIsWhereOpeningAtOnceEnds) {
   Scene scene = pressed_blocks();
   // So little that corners do not slip past each other: what they do depends on the way.
-  scene.setup.in_situ = InSituStress{.sxx = -1e5, .syy = -1e5};
+  scene.setup.in_situ = block::InSituStress{.sxx = -1e5, .syy = -1e5};
   scene.setup.stages = {settles(), opens("open", 1.0, 5)};
-  const RunRecord in_parts = run_of(scene.setup);
+  const record::RunRecord in_parts = run_of(scene.setup);
   scene.setup.stages[1].release_steps = 1;
-  const RunRecord in_one_part = run_of(scene.setup);
+  const record::RunRecord in_one_part = run_of(scene.setup);
   scene.setup.stages[1].release.clear();
-  const RunRecord at_once = run_of(scene.setup);
+  const record::RunRecord at_once = run_of(scene.setup);
   EXPECT_TRUE(at_once.stages[1].release.empty());
   EXPECT_EQ(in_one_part.state_hash, at_once.state_hash);
   const double whole = at_once.stages[1].damage.closure_vertical;
@@ -114,11 +114,11 @@ TEST(StagedOpening, AllReleasedIsWhereOpeningAtOnceEnds) {
 TEST(StagedOpening, GoesOnFromACheckpointInTheSameBits) {
   Scene scene = pressed_blocks();
   scene.setup.stages = {settles(), opens("open", 0.3, 4), releases("more", 0.9, 3)};
-  const RunRecord whole = run_of(scene.setup);
+  const record::RunRecord whole = run_of(scene.setup);
   const FreshFolder folder;
   RunOptions options;
   options.directory = folder;
-  RunObserver nobody;
+  record::RunObserver nobody;
   {
     Runner runner(scene.setup, options, nobody);
     while (!runner.done() && runner.stage() < 2) runner.advance();
@@ -126,7 +126,7 @@ TEST(StagedOpening, GoesOnFromACheckpointInTheSameBits) {
     EXPECT_FALSE(runner.state().walls.forces.empty());
   }
   options.resume = true;
-  const RunRecord resumed = run(scene.setup, options, nobody);
+  const record::RunRecord resumed = run(scene.setup, options, nobody);
   EXPECT_EQ(resumed.state_hash, whole.state_hash);
   ASSERT_EQ(resumed.stages.size(), 3);
   for (std::size_t k : {1U, 2U}) {
@@ -153,12 +153,12 @@ Scene hanging_block(double gap) {
 
 TEST(StagedOpening, ForcesOnABlockThatNothingElsePressesEnd) {
   Scene scene = hanging_block(0.01);
-  scene.setup.stages = {settles(), opens("open", 0.0, 1), stage("rest", StageKind::rest, 0.1)};
-  RunObserver nobody;
+  scene.setup.stages = {settles(), opens("open", 0.0, 1), stage("rest", record::StageKind::rest, 0.1)};
+  record::RunObserver nobody;
   Runner runner(scene.setup, {}, nobody);
   while (!runner.done()) runner.advance();
   EXPECT_EQ(runner.state().walls.left[2], 1);
-  const RunRecord record = runner.finish();
+  const record::RunRecord record = runner.finish();
   const double fall = record.stages[2].damage.displacement_max - record.stages[1].damage.displacement_max;
   EXPECT_NEAR(fall, 0.5 * g * 0.1 * 0.1, 0.03 * 0.5 * g * 0.1 * 0.1);
 }
@@ -166,10 +166,11 @@ TEST(StagedOpening, ForcesOnABlockThatNothingElsePressesEnd) {
 TEST(SupportPressure, IsThatOfTheStage) {
   Scene scene = hanging_block(0.0);
   const double weight = 2600.0 * g;
-  scene.setup.stages = {settles(), stage("open", StageKind::rest, 0.1), stage("less", StageKind::rest, 0.1)};
+  scene.setup.stages = {settles(), stage("open", record::StageKind::rest, 0.1),
+                        stage("less", record::StageKind::rest, 0.1)};
   scene.setup.stages[1].excavate = {0};
   scene.setup.excavations[0].pressure.over_stages = {{1, weight}, {2, 0.5 * weight}};
-  const RunRecord record = run_of(scene.setup);
+  const record::RunRecord record = run_of(scene.setup);
   EXPECT_LT(record.stages[1].damage.displacement_max, 1e-5);
   EXPECT_NEAR(record.stages[2].damage.displacement_max, 0.25 * g * 0.01, 0.03 * 0.25 * g * 0.01);
   EXPECT_LT(record.energy.residual_ratio, 1e-6);
@@ -178,11 +179,11 @@ TEST(SupportPressure, IsThatOfTheStage) {
 TEST(SupportPressure, FollowsATable) {
   Scene scene = hanging_block(0.0);
   const double weight = 2600.0 * g;
-  scene.setup.stages = {settles(), stage("open", StageKind::rest, 0.2)};
+  scene.setup.stages = {settles(), stage("open", record::StageKind::rest, 0.2)};
   scene.setup.stages[1].excavate = {0};
   scene.setup.excavations[0].pressure.over_time =
       loading::TimeTable({{0.0, weight}, {0.1, weight}, {0.1001, 0.0}});
-  const RunRecord record = run_of(scene.setup);
+  const record::RunRecord record = run_of(scene.setup);
   EXPECT_NEAR(record.stages[1].damage.displacement_max, 0.5 * g * 0.01, 0.05 * 0.5 * g * 0.01);
 }
 

@@ -18,17 +18,17 @@ RunSetup slide(double duration, double time_step = 0.001) {
   scene.rectangle({0.0, 0.0}, 1.0, 0.5);
   scene.setup.time_step = time_step;
   scene.setup.properties[1].velocity = {1.0, 0.0};
-  Stage rest = stage("slide", StageKind::rest, duration);
+  record::Stage rest = stage("slide", record::StageKind::rest, duration);
   rest.until_still = true;
   rest.still_time = 0.1;
-  scene.setup.stages = {rest, stage("after", StageKind::rest, 0.05)};
+  scene.setup.stages = {rest, stage("after", record::StageKind::rest, 0.05)};
   return scene.setup;
 }
 
 // The stage ends so long after the block has come to rest as is asked for, and the next one follows there.
 TEST(Stillness, EndsAStageWhenNothingMoves) {
-  RunObserver nobody;
-  const RunRecord record = run(slide(5.0), {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord record = run(slide(5.0), {}, nobody);
   ASSERT_EQ(record.stages.size(), 2u);
   EXPECT_TRUE(record.stages[0].still);
   EXPECT_FALSE(record.stages[0].interrupted);
@@ -41,8 +41,8 @@ TEST(Stillness, EndsAStageWhenNothingMoves) {
 
 // What still moves at the end of the duration is cut off there, as without `until`.
 TEST(Stillness, ADurationThatIsOverEndsTheStage) {
-  RunObserver nobody;
-  const RunRecord record = run(slide(0.15), {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord record = run(slide(0.15), {}, nobody);
   EXPECT_FALSE(record.stages[0].still);
   EXPECT_FALSE(record.stages[0].interrupted);
   EXPECT_EQ(record.stages[0].duration, 0.15);
@@ -51,8 +51,8 @@ TEST(Stillness, ADurationThatIsOverEndsTheStage) {
 // A run that is interrupted while it waits, and resumed, waits on.
 TEST(Stillness, AResumedRunEndsInTheSameBits) {
   const RunSetup setup = slide(5.0, 5e-5);
-  RunObserver nobody;
-  const RunRecord whole = run(setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord whole = run(setup, {}, nobody);
   const FreshFolder folder;
   RunOptions options;
   options.directory = folder;
@@ -61,7 +61,7 @@ TEST(Stillness, AResumedRunEndsInTheSameBits) {
   EXPECT_TRUE(run(setup, options, stopper).interrupted);
   options.stop = nullptr;
   options.resume = true;
-  const RunRecord resumed = run(setup, options, nobody);
+  const record::RunRecord resumed = run(setup, options, nobody);
   EXPECT_EQ(resumed.state_hash, whole.state_hash);
   EXPECT_EQ(resumed.stages[0].steps, whole.stages[0].steps);
 }
@@ -92,8 +92,8 @@ RunSetup loaded_later(double until) {
 
 // Nothing that is planned may come after the end.
 TEST(Stillness, WaitsForALoadThatIsToCome) {
-  RunObserver nobody;
-  const RunRecord record = run(loaded_later(1.1), {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord record = run(loaded_later(1.1), {}, nobody);
   ASSERT_TRUE(record.stages[0].waits_for);
   EXPECT_EQ(record.stages[0].waits_for->what, "load 1");
   EXPECT_EQ(record.stages[0].waits_for->until, 1.1);
@@ -104,8 +104,8 @@ TEST(Stillness, WaitsForALoadThatIsToCome) {
 
 // What comes after its longest duration keeps it going to that: later stages count on its time.
 TEST(Stillness, WaitsToTheEndForWhatComesLater) {
-  RunObserver nobody;
-  const RunRecord record = run(loaded_later(9.0), {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord record = run(loaded_later(9.0), {}, nobody);
   EXPECT_FALSE(record.stages[0].still);
   EXPECT_EQ(record.stages[0].duration, 5.0);
 }

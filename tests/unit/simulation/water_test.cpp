@@ -14,9 +14,9 @@ Water level_at(const char* name, double height) {
   return {name, loading::WaterTable({{0.0, height}}), 1000.0, {}};
 }
 
-struct LastContacts final : RunObserver {
-  std::vector<ContactRecord> contacts_;
-  void contacts(const ContactFrame& frame) override { contacts_ = frame.contacts; }
+struct LastContacts final : record::RunObserver {
+  std::vector<record::ContactRecord> contacts_;
+  void contacts(const record::ContactFrame& frame) override { contacts_ = frame.contacts; }
 };
 
 /// A roof of two blocks, between which a wedge hangs from its joints, under water.
@@ -42,20 +42,20 @@ Scene wet_blocks() {
   }
   scene.setup.system.blocks[8].excavations = {0};
   scene.setup.excavations.push_back({"middle", {{1.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {1.0, 2.0}}});
-  scene.setup.in_situ = InSituStress{.sxx = -1e6, .syy = -1e6};
+  scene.setup.in_situ = block::InSituStress{.sxx = -1e6, .syy = -1e6};
   scene.setup.time_step = 0.002;
   scene.setup.waters = {level_at("table", 33.0)};
   return scene;
 }
 
-Stage settles(const char* name) {
-  Stage s = stage(name, StageKind::settle);
+record::Stage settles(const char* name) {
+  record::Stage s = stage(name, record::StageKind::settle);
   s.tolerance = 1e-7;
   return s;
 }
 
 /// N per thickness, on a block by its name.
-Vec2 force_on(const RunRecord& record, const std::string& name) {
+Vec2 force_on(const record::RunRecord& record, const std::string& name) {
   for (const auto& [known, force] : record.water->forces) {
     if (known == name) return force;
   }
@@ -67,11 +67,11 @@ TEST(Water, ContactsBeginWithEffectiveStress) {
   Scene scene = wet_blocks();
   scene.setup.stages = {settles("in place")};
   LastContacts last;
-  const RunRecord record = run(scene.setup, {}, last);
+  const record::RunRecord record = run(scene.setup, {}, last);
   EXPECT_LT(record.stages[0].damage.displacement_max, 1e-4);
   ASSERT_FALSE(last.contacts_.empty());
   double forces = 0.0, total = 0.0;
-  for (const ContactRecord& c : last.contacts_) {
+  for (const record::ContactRecord& c : last.contacts_) {
     const double head = 33.0 - c.position.y;
     EXPECT_NEAR(c.water_pressure, 1000.0 * g * head, 60.0) << c.position.y;
     forces += c.normal_force;
@@ -86,8 +86,8 @@ TEST(Water, DrainsIntoAnOpeningOrFillsIt) {
     scene.setup.excavations[0].is_filled = is_filled;
     scene.setup.stages = {settles("in place"), settles("open")};
     scene.setup.stages[1].excavate = {0};
-    RunObserver nobody;
-    const RunRecord record = run(scene.setup, {}, nobody);
+    record::RunObserver nobody;
+    const record::RunRecord record = run(scene.setup, {}, nobody);
     ASSERT_TRUE(record.water);
     EXPECT_EQ(record.water->drained, is_filled ? 0.0 : 4.0);
     // The block below the opening: buoyant where water stands in it, else pressed up by all of what is below.
@@ -104,8 +104,8 @@ TEST(Water, NothingReleasedMovesNothing) {
     scene.setup.stages = {settles("in place"), settles("open")};
     scene.setup.stages[1].excavate = {0};
     scene.setup.stages[1].release = {{0, 0.0}};
-    RunObserver nobody;
-    const RunRecord record = run(scene.setup, {}, nobody);
+    record::RunObserver nobody;
+    const record::RunRecord record = run(scene.setup, {}, nobody);
     EXPECT_TRUE(record.stages[1].equilibrium_reached);
     EXPECT_LT(record.stages[1].damage.displacement_max, 1e-8);
   }
@@ -115,7 +115,7 @@ TEST(Water, ReleasedInPartsIsAsReleasedAtOnce) {
   Scene scene = wet_blocks();
   scene.setup.stages = {settles("in place"), settles("open")};
   scene.setup.stages[1].excavate = {0};
-  RunObserver nobody;
+  record::RunObserver nobody;
   const double at_once = run(scene.setup, {}, nobody).stages[1].damage.displacement_max;
   scene.setup.stages[1].release = {{0, 1.0}};
   scene.setup.stages[1].release_steps = 4;
@@ -127,9 +127,9 @@ TEST(Water, ReleasedInPartsIsAsReleasedAtOnce) {
 // In a lake it falls as its weight under water makes it: joints that open are full of the lake.
 TEST(Water, StaysInJointsThatOpenIntoIt) {
   Scene scene = wet_roof();
-  scene.setup.stages = {stage("fall", StageKind::rest, 0.2)};
-  RunObserver nobody;
-  const RunRecord record = run(scene.setup, {}, nobody);
+  scene.setup.stages = {stage("fall", record::StageKind::rest, 0.2)};
+  record::RunObserver nobody;
+  const record::RunRecord record = run(scene.setup, {}, nobody);
   EXPECT_EQ(record.water->drained, 0.0);
   EXPECT_NEAR(record.energy.kinetic / (0.5 * 2600.0 * 3.0 * std::pow(0.2 * g * 1.6 / 2.6, 2)), 1.0, 0.02);
   EXPECT_LT(record.energy.residual_ratio, 1e-6);
@@ -143,9 +143,9 @@ TEST(Water, StaysInTheCrackOfASlope) {
   scene.add({{0.0, 0.0}, {x, y}, {x, 12.0}, {x - 3.0, 12.0}});
   scene.setup.waters = {{"full", loading::WaterTable({{0.0, 0.0}, {x, 12.0}}), 1000.0, {}}};
   scene.setup.time_step = 0.005;
-  scene.setup.stages = {stage("slide", StageKind::rest, 2.0)};
-  RunObserver nobody;
-  const RunRecord record = run(scene.setup, {}, nobody);
+  scene.setup.stages = {stage("slide", record::StageKind::rest, 2.0)};
+  record::RunObserver nobody;
+  const record::RunRecord record = run(scene.setup, {}, nobody);
   EXPECT_EQ(record.water->drained, 0.0);
   EXPECT_GT(record.stages[0].damage.displacement_max, 0.3);
 }
@@ -157,10 +157,11 @@ TEST(Water, LeavesJointsThatOpen) {
   scene.rectangle({-1.0, -1.0}, 2.0, 1.0);
   scene.setup.system.blocks[4].excavations = {0};
   scene.setup.excavations.push_back({"below", {{-1.0, -1.0}, {1.0, -1.0}, {1.0, 0.0}, {-1.0, 0.0}}});
-  scene.setup.stages = {stage("open", StageKind::settle), stage("fall", StageKind::rest, 0.2)};
+  scene.setup.stages = {stage("open", record::StageKind::settle),
+                        stage("fall", record::StageKind::rest, 0.2)};
   scene.setup.stages[0].excavate = {0};
-  RunObserver nobody;
-  const RunRecord record = run(scene.setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord record = run(scene.setup, {}, nobody);
   EXPECT_GT(record.water->drained, 2.0 * std::sqrt(4.25));
   EXPECT_NEAR(record.energy.kinetic / (0.5 * 2600.0 * 3.0 * std::pow(0.2 * g, 2)), 1.0,
               0.05);  // wet, it would be 25
@@ -175,9 +176,9 @@ TEST(Water, StaysAgainstAWallThatRocks) {
   scene.setup.waters = {{"lake", loading::WaterTable({{0.0, 3.0}, {2.0, 0.0}}), 1000.0, {}}};
   scene.setup.properties[1].spin = -0.4;
   scene.setup.time_step = 0.002;
-  scene.setup.stages = {stage("rock", StageKind::rest, 0.1)};
-  RunObserver nobody;
-  const RunRecord record = run(scene.setup, {}, nobody);
+  scene.setup.stages = {stage("rock", record::StageKind::rest, 0.1)};
+  record::RunObserver nobody;
+  const record::RunRecord record = run(scene.setup, {}, nobody);
   EXPECT_EQ(record.water->drained, 0.0);
   EXPECT_NEAR(force_on(record, "water.b1").x / (0.5 * 1000.0 * g * 9.0), 1.0, 0.05);
   EXPECT_LT(record.energy.residual_ratio, 1e-3);
@@ -193,7 +194,7 @@ TEST(Water, HasTheSameForceForAnyNumberOfContacts) {
     scene.setup.solver.face_contacts = contacts;
     scene.setup.time_step = 0.002;
     scene.setup.stages = {settles("stand")};
-    RunObserver nobody;
+    record::RunObserver nobody;
     const Vec2 force = force_on(run(scene.setup, {}, nobody), "water.b1");
     EXPECT_NEAR(force.x / (0.5 * 1000.0 * g * 4.0), 1.0, 1e-4) << contacts;
     EXPECT_NEAR(force.y / (0.5 * 1000.0 * g * 2.0), 1.0, 1e-4) << contacts;
@@ -208,8 +209,8 @@ TEST(Water, StagesChoose) {
   scene.setup.stages[3].water = 1;
   EXPECT_EQ(water_in(scene.setup, 0), 0);
   EXPECT_EQ(water_in(scene.setup, 2), -1);
-  RunObserver nobody;
-  const RunRecord record = run(scene.setup, {}, nobody);
+  record::RunObserver nobody;
+  const record::RunRecord record = run(scene.setup, {}, nobody);
   ASSERT_TRUE(record.water);
   EXPECT_EQ(record.water->name, "low");
   EXPECT_NEAR(record.water->largest_pressure, 1000.0 * g * 2.0, 1e-6);
@@ -219,8 +220,9 @@ TEST(Water, StagesChoose) {
 
 TEST(Water, HasTheSameBitsForAnyThreadsAndAfterResuming) {
   Scene scene = wet_roof();
-  scene.setup.stages = {stage("fall", StageKind::rest, 0.1), stage("fall on", StageKind::rest, 0.1)};
-  RunObserver nobody;
+  scene.setup.stages = {stage("fall", record::StageKind::rest, 0.1),
+                        stage("fall on", record::StageKind::rest, 0.1)};
+  record::RunObserver nobody;
   const std::string hash = run(scene.setup, {}, nobody).state_hash;
   RunOptions options;
   options.threads = 3;

@@ -12,16 +12,16 @@ namespace {
 /// A block on an incline of 30° that its peak strength holds, and its residual strength does not.
 Scene held_by_peak_strength(double slip) {
   Scene scene(1e10, 40.0);
-  scene.setup.joints.standard.residual = JointProperties::Residual{20.0, 0.0, slip};
+  scene.setup.joints.standard.residual = contact::JointProperties::Residual{20.0, 0.0, slip};
   const Vec2 along = direction(30.0), up{-along.y, along.x};
   scene.rectangle(-20.0 * along - up, 40.0, 1.0, 30.0, true);
   scene.rectangle({}, 1.0, 0.5, 30.0);
   return scene;
 }
 
-struct AllContacts final : RunObserver {
-  std::vector<ContactFrame> frames;
-  void contacts(const ContactFrame& frame) override { frames.push_back(frame); }
+struct AllContacts final : record::RunObserver {
+  std::vector<record::ContactFrame> frames;
+  void contacts(const record::ContactFrame& frame) override { frames.push_back(frame); }
 };
 
 double worn(const Simulator& s) {
@@ -73,20 +73,20 @@ TEST(Weakening, PiecesAreWornByTheWayOfTheSlip) {
 TEST(Weakening, CohesionEndsWhereAFaceHasOpened) {
   Scene scene(1e10, 15.0, 2500.0);
   scene.setup.joints.standard.cohesion = 1e5;
-  scene.setup.joints.standard.residual = JointProperties::Residual{15.0, 1e5, 0.0};
+  scene.setup.joints.standard.residual = contact::JointProperties::Residual{15.0, 1e5, 0.0};
   scene.setup.joints.standard.normal_stiffness = 3e9;
   scene.setup.solver.face_contacts = 5;
   scene.setup.gravity = -9.81 * Vec2{-std::sin(20.0 * degree), std::cos(20.0 * degree)};
   scene.rectangle({-20.0, -1.0}, 50.0, 1.0, 0.0, true);
   scene.rectangle({0.0, 0.0}, 4.0, 10.0);
   scene.setup.time_step = 0.002;
-  scene.setup.stages.push_back(stage("settle", StageKind::settle));
+  scene.setup.stages.push_back(stage("settle", record::StageKind::settle));
   AllContacts observer;
   run(scene.setup, {}, observer);
   ASSERT_FALSE(observer.frames.empty());
   const double in_place = 1e-4 * std::sqrt(40.0);
   int open = 0;
-  for (const ContactRecord& c : observer.frames.back().contacts) {
+  for (const record::ContactRecord& c : observer.frames.back().contacts) {
     if (c.gap <= in_place) continue;
     ++open;
     EXPECT_EQ(c.shear_force, 0.0) << c.position.x;
@@ -99,8 +99,8 @@ TEST(Weakening, AResumedRunKnowsWhatIsWorn) {
   scene.setup.time_step = 0.005;
   scene.setup.properties[1].velocity = -0.4 * direction(30.0);
   for (const char* name : {"slide", "slide on"})
-    scene.setup.stages.push_back(stage(name, StageKind::rest, 0.1));  // a checkpoint is at its end
-  RunObserver nobody;
+    scene.setup.stages.push_back(stage(name, record::StageKind::rest, 0.1));  // a checkpoint is at its end
+  record::RunObserver nobody;
   Stopper after(25);
   EXPECT_EQ(resumed_run(scene.setup, after).state_hash, run(scene.setup, {}, nobody).state_hash);
 }

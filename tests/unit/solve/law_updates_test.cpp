@@ -105,7 +105,7 @@ TEST(LawUpdates, BreakBondsThatArePulledBeyondTheirTension) {
 TEST(LawUpdates, BreakBondsThatAreSheared) {
   for (const bool keeps : {false, true}) {
     Scene scene = block_on_floor(1e4);
-    if (keeps) scene.setup.joints.standard.residual = JointProperties::Residual{20.0, 4e3, 0.0};
+    if (keeps) scene.setup.joints.standard.residual = contact::JointProperties::Residual{20.0, 4e3, 0.0};
     Simulator s(scene);
     s.run(0.05, 0.005);
     s.state.velocity[s.model.blocks[1].first] += 2.0;

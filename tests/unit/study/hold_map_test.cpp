@@ -10,7 +10,7 @@
 namespace keyblock::study {
 namespace {
 
-using simulation::BlockStatus;
+using record::BlockStatus;
 using CellTrials = std::vector<std::pair<double, const std::vector<BlockStatus>*>>;
 using CellStates = std::vector<BlockStatus>;
 

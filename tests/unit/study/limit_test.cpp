@@ -16,7 +16,7 @@
 namespace keyblock::study {
 namespace {
 
-using simulation::Standing;
+using record::Standing;
 using testing::HasSubstr;
 using Status = Bisection::Status;
 
@@ -73,7 +73,7 @@ TEST(LimitCriterion, HoldsByTheLastStage) {
 
 TEST(LimitCriterion, WhatAStaticStageCallsMovingIsBeyondAnyDistance) {
   RunResult run = run_with(0.0, 1e-4, Standing::moves);
-  run.stages.back().kind = simulation::StageKind::settle;
+  run.stages.back().kind = record::StageKind::settle;
   const auto met = [&](const char* name, std::optional<double> above) {
     return limit_trial(request_of(limit_criterion(name, above, 0.01)), 1.0, run).met;
   };
@@ -82,11 +82,11 @@ TEST(LimitCriterion, WhatAStaticStageCallsMovingIsBeyondAnyDistance) {
   EXPECT_FALSE(met("fallen", {}));
   // It slides a while, and is caught.
   run.stages.emplace_back();
-  run.stages.back().kind = simulation::StageKind::rest;
+  run.stages.back().kind = record::StageKind::rest;
   run.stages.back().damage.displacement_max = 0.4;
   EXPECT_TRUE(met("collapsed", {}));
   // A later static stage finds that it is held.
-  run.stages.back().kind = simulation::StageKind::settle;
+  run.stages.back().kind = record::StageKind::settle;
   EXPECT_FALSE(met("collapsed", {}));
 }
 

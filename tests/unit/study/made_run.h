@@ -19,7 +19,7 @@ inline RunResult made_run(int realization, std::vector<std::string> values, doub
   StageMeasures quiet, shake;
   quiet.name = "excavated";
   shake.name = "quake";
-  shake.kind = simulation::StageKind::shake;
+  shake.kind = record::StageKind::shake;
   shake.pga = pga;
   shake.damage.fallen_area = fallen;
   run.stages = {quiet, shake};

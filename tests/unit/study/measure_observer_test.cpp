@@ -6,12 +6,12 @@
 namespace keyblock::study {
 namespace {
 
-using simulation::BlockStatus;
+using record::BlockStatus;
 using testing::Each;
 using testing::ElementsAre;
 
-void add_block(simulation::ModelRecord& model, const std::vector<std::vector<Vec2>>& rings) {
-  simulation::ModelRecord::Block block;
+void add_block(record::ModelRecord& model, const std::vector<std::vector<Vec2>>& rings) {
+  record::ModelRecord::Block block;
   block.area = 2.0;
   block.centroid = {0.25, 0.5};
   for (const auto& ring : rings) {
@@ -27,8 +27,8 @@ std::vector<Vec2> rectangle(double x0, double y0, double x1, double y1) {
 }
 
 /// A 4 × 4 block with a hole of 2 × 2, in which a smaller one lies; and a frame around, which does not count.
-simulation::ModelRecord nested() {
-  simulation::ModelRecord model;
+record::ModelRecord nested() {
+  record::ModelRecord model;
   model.origin = {100.0, 50.0};
   add_block(model, {rectangle(0, 0, 4, 4), rectangle(1, 1, 3, 3)});
   add_block(model, {rectangle(1, 1, 2, 3)});
@@ -51,7 +51,7 @@ TEST(BlocksOfCells, OutsideOfTheGrid) {
 
 // Every cell lies in one block at most, and the cells of a block cover its area.
 TEST(BlocksOfCells, CoverTheAreaOfATriangle) {
-  simulation::ModelRecord model;
+  record::ModelRecord model;
   add_block(model, {{{0.1, 0.2}, {7.3, 1.1}, {2.2, 8.4}}});
   const double area = 0.5 * ((7.3 - 0.1) * (8.4 - 0.2) - (2.2 - 0.1) * (1.1 - 0.2));
   const auto cells = blocks_of_cells({{0.0, 0.0}, 0.02, 400, 450}, model, 1);
@@ -59,8 +59,8 @@ TEST(BlocksOfCells, CoverTheAreaOfATriangle) {
   EXPECT_NEAR(static_cast<double>(inside) * 0.02 * 0.02, area, 0.05);
 }
 
-simulation::StageRecord stage(const std::string& name) {
-  simulation::StageRecord record;
+record::StageRecord stage(const std::string& name) {
+  record::StageRecord record;
   record.stage.name = name;
   return record;
 }
@@ -69,15 +69,15 @@ TEST(MeasureObserver, TheStageInWhichABlockFell) {
   RunResult result;
   MeasureObserver observer(result, {{100.0, 50.0}, 1.0, 5, 4}, 2, 0.01);
   const auto go = [&](int index, BlockStatus a, BlockStatus b, bool interrupted = false) {
-    simulation::Frame frame;
+    record::Frame frame;
     frame.status = {BlockStatus::fallen, BlockStatus::fallen, BlockStatus::in_place};  // for a moment
     observer.frame(frame);
     frame.status = {a, b, BlockStatus::in_place};
     observer.frame(frame);
-    simulation::StageRecord record = stage("s" + std::to_string(index));
+    record::StageRecord record = stage("s" + std::to_string(index));
     for (int k = 0; k < 2; ++k) {
       if ((k == 0 ? a : b) == BlockStatus::fallen)
-        record.fallen.push_back({k, 2.0, 500.0, 0.5 + k, simulation::WallPart::left});
+        record.fallen.push_back({k, 2.0, 500.0, 0.5 + k, record::WallPart::left});
     }
     record.interrupted = interrupted;
     record.pgv = 0.25 * index;
@@ -88,7 +88,7 @@ TEST(MeasureObserver, TheStageInWhichABlockFell) {
   go(1, BlockStatus::fallen, BlockStatus::loosened);
   go(2, BlockStatus::fallen, BlockStatus::fallen);
   go(3, BlockStatus::fallen, BlockStatus::fallen, true);
-  simulation::RunRecord run;
+  record::RunRecord run;
   run.steps = 99;
   run.open_close.unconverged_steps = 3;
   observer.end(run);
@@ -98,7 +98,7 @@ TEST(MeasureObserver, TheStageInWhichABlockFell) {
   EXPECT_EQ(result.fallen[1].area, 2.0);
   EXPECT_EQ(result.fallen[1].weight, 500.0);
   EXPECT_EQ(result.fallen[1].depth, 1.5);
-  EXPECT_EQ(result.fallen[1].part, simulation::WallPart::left);
+  EXPECT_EQ(result.fallen[1].part, record::WallPart::left);
   EXPECT_EQ(result.fallen[0].centroid, (Vec2{100.25, 50.5}));
   EXPECT_EQ(result.blocks, 2);
   EXPECT_EQ(result.steps, 99);

@@ -37,13 +37,13 @@ class MutatedStudy : public ::testing::Test {
     for (const PlannedRun& run : plan.runs) {
       RunResult result = empty_result(run);
       result.state_hash = "00ff";
-      StageMeasures stage{plan.stage, simulation::StageKind::shake, 1.1, 0.2, 0.3, {}};
+      StageMeasures stage{plan.stage, record::StageKind::shake, 1.1, 0.2, 0.3, {}};
       stage.damage.fallen_blocks = 1;
-      result.stages = {{plan.since, simulation::StageKind::settle, 0.0, 0.0, 0.0, {}}, stage};
-      result.fallen = {{3, "slab", 1, {0.1, -0.2}, 0.7, 0.1, 0.9, simulation::WallPart::right}};
+      result.stages = {{plan.since, record::StageKind::settle, 0.0, 0.0, 0.0, {}}, stage};
+      result.fallen = {{3, "slab", 1, {0.1, -0.2}, 0.7, 0.1, 0.9, record::WallPart::right}};
       result.map.assign(
           static_cast<std::size_t>(plan.grid.columns) * static_cast<std::size_t>(plan.grid.rows),
-          simulation::BlockStatus::fallen);
+          record::BlockStatus::fallen);
       make_run_folder(folder_, run.key);
       write(run_folder(folder_, run.key) / "run.json", run_json(result, run_input(plan)));
     }

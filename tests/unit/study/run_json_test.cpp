@@ -13,8 +13,8 @@
 namespace keyblock::study {
 namespace {
 
-using simulation::BlockStatus;
-using simulation::StageKind;
+using record::BlockStatus;
+using record::StageKind;
 
 RunResult sample_run() {
   RunResult run;
@@ -33,10 +33,10 @@ RunResult sample_run() {
   StageMeasures stage{"first earthquake", StageKind::shake, 1.1, 0.2, 0.3, {}};
   stage.damage.fallen_blocks = 4;
   double value = 0.1;
-  for (const auto& field : simulation::damage_fields) stage.damage.*field.number = value += 1.0 / 7.0;
+  for (const auto& field : record::damage_fields) stage.damage.*field.number = value += 1.0 / 7.0;
   run.stages = {stage, {"rest", StageKind::rest, 0.0, 0.0, 0.0, {}}};
-  run.fallen = {{3, "slab", 1, {0.1, -0.2}, 0.7, 1.0 / 7.0, 0.9, simulation::WallPart::right},
-                {4, "", 1, {0.1, -0.2}, 0.7, 0.1, std::nan(""), simulation::WallPart::none}};
+  run.fallen = {{3, "slab", 1, {0.1, -0.2}, 0.7, 1.0 / 7.0, 0.9, record::WallPart::right},
+                {4, "", 1, {0.1, -0.2}, 0.7, 0.1, std::nan(""), record::WallPart::none}};
   run.map = {BlockStatus::in_place,  BlockStatus::in_place,  BlockStatus::fallen,
              BlockStatus::excavated, BlockStatus::excavated, BlockStatus::loosened};
   return run;

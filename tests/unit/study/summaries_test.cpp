@@ -96,7 +96,7 @@ TEST(Summaries, MeasuresMayBeginLater) {
 
 // The largest block fell before the quake, from the left; a smaller one in it, from the crown; another later.
 TEST(Summaries, ExtremesAreOfWhatFellBetween) {
-  using simulation::WallPart;
+  using record::WallPart;
   StudyData study = small();
   RunResult& run = study.runs[0];
   run.stages.push_back(run.stages.back());
@@ -109,7 +109,7 @@ TEST(Summaries, ExtremesAreOfWhatFellBetween) {
   for (StageMeasures& stage : run.stages) stage.damage.largest_fallen_area = 3.0;
   study.since = "excavated";
   study.stage = "quake";
-  const simulation::Damage damage = *measured(study, run).damage;
+  const record::Damage damage = *measured(study, run).damage;
   EXPECT_DOUBLE_EQ(damage.fallen_weight, 10e3);
   EXPECT_DOUBLE_EQ(damage.largest_fallen_area, 0.4);
   EXPECT_DOUBLE_EQ(damage.largest_fallen_weight, 10e3);
@@ -220,7 +220,7 @@ TEST(Summaries, EqualDifferencesAreOneValue) {
 }
 
 TEST(Summaries, MapsCountRunsByCell) {
-  using simulation::BlockStatus;
+  using record::BlockStatus;
   StudyData study = small();
   study.grid = {{0.0, 0.0}, 1.0, 2, 1};
   study.runs[0].map = {BlockStatus::fallen, BlockStatus::excavated};
@@ -272,7 +272,7 @@ TEST(Summarize, RunsWithoutAMeasureAreNoPartOfItsSample) {
 }
 
 TEST(Measures, AreThoseOfTheSummary) {
-  ASSERT_EQ(measures().size(), simulation::damage_names().size());
+  ASSERT_EQ(measures().size(), record::damage_names().size());
   EXPECT_EQ(measures()[0].name, "fallen_blocks");
   EXPECT_EQ(find_measure("largest_utilization"), measures().size() - 1);
   EXPECT_FALSE(find_measure("fallen").has_value());

@@ -16,8 +16,8 @@ namespace keyblock::made_up {
 
 namespace {
 
-using simulation::BlockStatus;
-using simulation::StageKind;
+using record::BlockStatus;
+using record::StageKind;
 
 constexpr double radius = 2.75, half_domain = 10.0;
 constexpr int columns = 28;
@@ -169,9 +169,9 @@ study::StudyData synthetic_study(const SyntheticStudyOptions& options) {
   return study;
 }
 
-std::pair<simulation::ModelRecord, simulation::Frame> synthetic_tunnel(int realization, double severity) {
-  simulation::ModelRecord model;
-  simulation::Frame frame;
+std::pair<record::ModelRecord, record::Frame> synthetic_tunnel(int realization, double severity) {
+  record::ModelRecord model;
+  record::Frame frame;
   model.excavation_outlines = {outline({0.0, 0.0})};
   model.opening_width = 2.0 * radius;
   const double size = 2.0 * half_domain / columns;
@@ -190,7 +190,7 @@ std::pair<simulation::ModelRecord, simulation::Frame> synthetic_tunnel(int reali
   for (int j = 0; j < columns; ++j) {
     for (int i = 0; i < columns; ++i) {
       const Vec2 ring[] = {corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)};
-      simulation::ModelRecord::Block block;
+      record::ModelRecord::Block block;
       block.centroid = 0.25 * (ring[0] + ring[1] + ring[2] + ring[3]);
       block.area = 0.5 * std::abs(cross(ring[2] - ring[0], ring[3] - ring[1]));
       const int first = static_cast<int>(model.vertices.size());

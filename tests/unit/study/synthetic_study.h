@@ -27,7 +27,7 @@ struct SyntheticStudyOptions {
 study::StudyData synthetic_study(const SyntheticStudyOptions& options = {});
 
 /// A tunnel of about 750 blocks, of which a share `severity` of those in the crown have fallen.
-std::pair<simulation::ModelRecord, simulation::Frame> synthetic_tunnel(int realization, double severity);
+std::pair<record::ModelRecord, record::Frame> synthetic_tunnel(int realization, double severity);
 
 /// DIR/runs/KEY/thumbnail.svg, and a report.html of a line, of all runs of the first `pictures` realizations.
 void write_synthetic_pictures(const std::filesystem::path& directory, const study::StudyData& study,

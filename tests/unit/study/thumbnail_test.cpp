@@ -13,12 +13,12 @@
 namespace keyblock::study {
 namespace {
 
-using simulation::BlockStatus;
+using record::BlockStatus;
 
 /// A square block of side 1 with its lower left corner at (x, y).
-void add_block(simulation::ModelRecord& model, simulation::Frame& frame, double x, double y,
-               BlockStatus status, std::array<float, 2> u = {0.0F, 0.0F}) {
-  simulation::ModelRecord::Block block;
+void add_block(record::ModelRecord& model, record::Frame& frame, double x, double y, BlockStatus status,
+               std::array<float, 2> u = {0.0F, 0.0F}) {
+  record::ModelRecord::Block block;
   const int first = static_cast<int>(model.vertices.size());
   block.ring_start = {first, first + 4};
   block.area = 1.0;
@@ -39,8 +39,8 @@ std::string path_of(const std::string& svg, char name) {
 }
 
 TEST(Thumbnail, DrawsBlocksWhereTheyAreByStatus) {
-  simulation::ModelRecord model;
-  simulation::Frame frame;
+  record::ModelRecord model;
+  record::Frame frame;
   add_block(model, frame, 0, 0, BlockStatus::in_place);
   add_block(model, frame, 1, 0, BlockStatus::excavated);
   add_block(model, frame, 1, 1, BlockStatus::fallen, {0.0F, -1.0F});
@@ -54,8 +54,8 @@ TEST(Thumbnail, DrawsBlocksWhereTheyAreByStatus) {
 }
 
 TEST(Thumbnail, ShowsTheSurroundingsOfTheOpening) {
-  simulation::ModelRecord model;
-  simulation::Frame frame;
+  record::ModelRecord model;
+  record::Frame frame;
   for (int i = -20; i < 20; ++i)
     for (int j = -20; j < 20; ++j) add_block(model, frame, i, j, BlockStatus::in_place);
   model.excavation_outlines = {{{-2, -1}, {2, -1}, {2, 1}, {-2, 1}}};
@@ -68,8 +68,8 @@ TEST(Thumbnail, ShowsTheSurroundingsOfTheOpening) {
 }
 
 TEST(Thumbnail, FixedBlocksAreToldApartAndDoNotSetTheWindow) {
-  simulation::ModelRecord model;
-  simulation::Frame frame;
+  record::ModelRecord model;
+  record::Frame frame;
   add_block(model, frame, 0, 0, BlockStatus::in_place);
   add_block(model, frame, 5, 5, BlockStatus::in_place);
   add_block(model, frame, 0.5, 0.5, BlockStatus::in_place);

@@ -17,7 +17,7 @@ struct Sample {
   void add(int realization, const std::string& value, double area) {
     plan.runs.push_back({"", realization, {{value}}, "", true});
     RunResult& run = runs.emplace_back();
-    run.stages.push_back({"after", simulation::StageKind::rest, 0.0, 0.0, 0.0, {}});
+    run.stages.push_back({"after", record::StageKind::rest, 0.0, 0.0, 0.0, {}});
     run.stages.back().damage.fallen_area = area;
   }
   std::optional<int> enough(std::size_t known) const {

@@ -22,7 +22,7 @@ TEST(Workers, ARunThatIsNotAskedForAnyMoreHasNotFailed) {
   for (int k = 0; k < 3; ++k) {
     plan.runs.push_back({"k" + std::to_string(k), k, {{"1"}}, "", true});
     RunResult result = empty_result(plan.runs.back());
-    result.stages.push_back({"after", simulation::StageKind::rest, 0.0, 0.0, 0.0, {}});
+    result.stages.push_back({"after", record::StageKind::rest, 0.0, 0.0, 0.0, {}});
     write_file_atomically(folder / (result.key + ".json"), run_json(result, run_input(plan)));
   }
   WorkerOptions options;
