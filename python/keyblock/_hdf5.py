@@ -15,6 +15,10 @@ FORMAT = "keyblock result"
 NEWEST_VERSION = 2
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
+# Deflate makes nothing smaller than by this. A dataset that says more was never written: its rows are read as zeros, all 10¹⁰ of them.
+_LARGEST_COMPRESSION = 1040
+_ALWAYS_TAKEN = 1 << 24  # bytes: with those it is not asked
+
 # What h5py throws where a file does not hold what it says.
 _BROKEN = (KeyError, OSError, RuntimeError, ValueError, TypeError, IndexError, MemoryError)
 
@@ -122,7 +126,14 @@ class ResultFile:
             raise DamagedError(f"{self.path} is damaged: {name} is missing or cannot be read") from None
         if not hasattr(dataset, "shape"):
             raise DamagedError(f"{self.path} is damaged: {name} is no dataset")
+        if self._says_more_than_it_holds(dataset):
+            raise DamagedError(f"{self.path} is damaged: {name} says that it has {dataset.shape[0]} rows, and holds fewer")
         return dataset
+
+    @staticmethod
+    def _says_more_than_it_holds(dataset: Any) -> bool:
+        said = dataset.size * dataset.dtype.itemsize if dataset.size else 0
+        return bool(said > _ALWAYS_TAKEN and said > _LARGEST_COMPRESSION * dataset.id.get_storage_size())
 
     def read(self, name: str, rows: Any = ()) -> np.ndarray:
         """The rows of a dataset, all by default. Throws DamagedError where it is missing or its checksum is wrong."""

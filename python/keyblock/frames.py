@@ -110,7 +110,7 @@ class Frame:
 
     def rings(self, block: int) -> list[np.ndarray]:
         """Outlines of a block as it lies: outer ring, then holes, each (n, 2), m."""
-        return self._blocks.outlines.of(block, self.vertices)
+        return [ring + self._blocks.origin for ring in self._blocks.outlines.of(block, self.local)]
 
     @cached_property
     def velocity(self) -> np.ndarray:
@@ -176,6 +176,7 @@ class Frames(Sequence[Frame]):
         self._file = file
         self._blocks = blocks
         self.moments = Moments.read(file, "frames", stage_names, "frames")
+        self._drawn: Frame | None = None
 
     @property
     def time(self) -> np.ndarray:
@@ -213,6 +214,13 @@ class Frames(Sequence[Frame]):
     def at(self, when: When = None) -> Frame:
         """The frame nearest to a simulated time in s; at the end of a stage, by its name; the last one for None."""
         return self[self.moments.index(when)]
+
+    def rings(self, block: int, when: When = None) -> list[np.ndarray]:
+        """Frame.rings of the frame at a time. One block after another of one moment costs one reading of the file."""
+        index = self.moments.index(when)
+        if self._drawn is None or self._drawn.index != index:
+            self._drawn = self[index]
+        return self._drawn.rings(block)
 
     def __repr__(self) -> str:
         span = f", {self.time[0]:g} to {self.time[-1]:g} s" if len(self) else ""

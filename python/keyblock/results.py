@@ -129,7 +129,7 @@ class Result:
 
     def rings(self, block: int | str, time: When = None) -> list[np.ndarray]:
         """Outlines of a block as it lies: the outer ring, then holes, each (n, 2), m."""
-        return self.frames.at(time).rings(self.blocks.index_of(block))
+        return self.frames.rings(self.blocks.index_of(block), time)
 
     @cached_property
     def frames(self) -> Frames:

@@ -106,7 +106,7 @@ def change(draw: random.Random, file: h5py.File) -> str:
 def looks(run: kb.Run) -> dict[str, Callable[[], Any]]:
     return {
         "blocks": lambda: (len(run.blocks), repr(run.blocks)),
-        "rings": lambda: [run.rings(b) for b in range(min(len(run.blocks), 100))],
+        "rings": lambda: [run.rings(b) for b in range(min(len(run.blocks), 300))],
         "rings at the end": lambda: [run.rings(b, run.frames.time[-1]) for b in range(min(len(run.blocks), 5))],
         "frames": lambda: (run.frames.time, run.frames[-1], repr(run.frames)),
         "displacement": lambda: run.frames[-1].displacement,

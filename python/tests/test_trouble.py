@@ -114,6 +114,24 @@ def test_datasets_that_are_missing_or_do_not_fit(copy):
         run.blocks
 
 
+def test_rows_that_were_never_written_are_damaged(copy):
+    with h5py.File(copy / "result.h5", "r+") as file:
+        del file["stages"]
+        file.create_dataset("stages", shape=(10**10,), dtype="u1", chunks=(1024,))
+    with kb.open(copy) as run, pytest.raises(kb.DamagedError, match="stages says that it has 10000000000 rows, and holds fewer"):
+        run.stages
+
+
+def test_outlines_of_one_moment_are_read_once(tunnel, monkeypatch):
+    read, names = type(tunnel._file).read, []
+    monkeypatch.setattr(type(tunnel._file), "read", lambda file, name, *rows: (names.append(name), read(file, name, *rows))[1])
+    for block in range(len(tunnel.blocks)):
+        ring = tunnel.rings(block)[0]
+    assert names.count("frames/displacement") == 1
+    np.testing.assert_array_equal(ring, tunnel.frames[-1].rings(len(tunnel.blocks) - 1)[0])
+    np.testing.assert_array_equal(tunnel.rings(0, 0.0)[0], tunnel.frames.at(0.0).rings(0)[0])
+
+
 def replace(file: h5py.File, name: str, data: object) -> None:
     attributes = dict(file[name].attrs)
     del file[name]
