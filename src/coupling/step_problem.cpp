@@ -38,6 +38,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   };
   add_part(contacts);
   for (const auto& coupling : model.couplings) add_part(*coupling);
+  // Rows of contacts come first: that a row is one of a contact is asked by its number.
   rows_.resize(rows);
   springs_.resize(rows);
   points_.resize(rows);
@@ -53,6 +54,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
     first_point += coupling->points().size();
   }
   owners_.find_ranges(team);
+  // Balance is measured by weights; where nothing has any, by the largest force that something is pressed with.
   terms_.weigh_motion(drive, model.gravity == Vec2{} ? largest_force(springs_, team) : 0.0);
 }
 

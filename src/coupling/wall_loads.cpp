@@ -20,6 +20,7 @@ const double* phi_at(const contact::Surface& surface, std::size_t vertex) {
 Vec2 force_on(const contact::Surface& surface, const WallFace& face, double pressure) {
   const std::size_t v = at(face.vertex), next = at(surface.next[v]);
   const Vec2 along = (face.to - face.from) * (surface.position[next] - surface.position[v]);
+  // As it lies: a wall that turns takes its support along, as a lining does.
   return pressure * perpendicular(along);  // the block is on the left of its edge
 }
 
@@ -41,6 +42,7 @@ void WallLoads::for_forces(const Model& model, const State& state, double time,
   for (const WallForce& wall : walls.forces) {
     const std::size_t v = at(wall.vertex), b = at(surface.block[v]);
     const double kept = 1.0 - walls.released[at(wall.excavation)];
+    // A block that has left the wall is pressed no more: what was cut away from it does not follow it down.
     if (kept > 0.0 && feels(b)) of_force(b, v, kept * wall.force);
   }
   for (const WallPressure& wall : pressures_) {

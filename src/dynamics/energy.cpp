@@ -11,6 +11,7 @@ double kinetic_energy(const Model& model, const State& state) {
   double sum = 0.0;
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     if (!model.moves(b)) continue;
+    // The basis is orthonormal over the block: its mass matrix is the density times the identity.
     const Block& block = model.blocks[b];
     double squared = 0.0;
     for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
@@ -33,6 +34,7 @@ double gravity_energy(const Model& model, const State& state) {
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     if (!model.moves(b)) continue;
     const Block& block = model.blocks[b];
+    // The first function of the basis is 1/√A: its coefficients are √A times where the centroid is.
     const Vec2 now{state.position[block.first], state.position[block.first + 1]};
     sum -= block.body_force() * dot(model.gravity, now - std::sqrt(block.area) * block.centroid);
   }

@@ -67,6 +67,7 @@ void LinearSystems::make_room(const Model& model, const Coupling& contacts, Stat
   std::vector<Unknowns> all;
   std::set_union(used.begin(), used.end(), state.pattern.begin(), state.pattern.end(),
                  std::back_inserter(all));
+  // Pairs that were used stay in the pattern, so that a contact which comes and goes does not cost an analysis each time.
   const bool is_idle = static_cast<double>(all.size() - used.size()) >
                        step_numbers::most_idle_share * static_cast<double>(used.size());
   state.pattern = is_idle ? std::move(used) : std::move(all);
@@ -82,6 +83,7 @@ void LinearSystems::forget() {
 /// Whether conjugate residuals take less than a factorization. Static steps have little inertia, and need many more iterations.
 bool LinearSystems::prefers_iterations(const State& state, bool is_static) {
   using namespace step_numbers;
+  // A factorization costs the products of its fill-in, an iteration those of the blocks: what decides is their ratio.
   const std::size_t blocks = unknown_sizes_.size();
   if (!products_) {
     products_ = blocks > most_factored

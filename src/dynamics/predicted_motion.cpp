@@ -37,6 +37,7 @@ void PredictedMotion::predict(const Model& model, const State& state, const Driv
   const double acceleration = norm(model.gravity - drive.ground_acceleration) * drive.step * drive.step;
   for_moving_blocks(model, team, [&](std::size_t b) {
     const Block& block = model.blocks[b];
+    // A static step has no velocity that says where blocks go: they may go twice as far as in the last one.
     if (drive.is_static) {
       reach_[b] = 2.0 * state.moved[b];
       turn_[b] = reach_[b] / block.radius;
@@ -52,6 +53,7 @@ void PredictedMotion::predict(const Model& model, const State& state, const Driv
         });
     speed_[b] = std::sqrt(fastest);
     differs_[b] = std::sqrt(against_first);
+    // Twice as far as in free flight: neighbours push, and to look for contacts again costs more than a few candidates too many.
     reach_[b] = 2.0 * speed_[b] * drive.step + 2.0 * acceleration;
     const double spin = block.pose.mean_spin(&state.velocity[block.first], &state.position[block.first]);
     turn_[b] = std::min(2.0 * std::abs(spin) * drive.step, reach_[b] / block.radius);
@@ -75,6 +77,7 @@ bool PredictedMotion::is_exceeded(const Attempt& attempt, std::span<const double
     double moved = 0.0;
     for (std::size_t v = begin; v < end; ++v) moved = std::max(moved, squared_norm(displacement[v]));
     moved = std::sqrt(moved);
+    // Contacts are found as far as the activation distance beyond where two blocks come: a half of it is for each.
     const bool is_far = moved > reach_[b] + 0.5 * tolerances.activation,
                is_turned = std::abs(spin[b]) > turn_[b] + 0.5 * contact::Tolerances::sine_inside;
     if (is_far) reach_[b] = 1.5 * moved;
@@ -86,6 +89,7 @@ bool PredictedMotion::is_exceeded(const Attempt& attempt, std::span<const double
     if (is_far_[b] != 0) any = true;
   });
   if (!any) return false;
+  // A corner that an attempt held seems to go nowhere in the next: where it would go, the first prediction says.
   if (predicted_at_first_.empty()) predicted_at_first_ = predicted_;
   for_moving_blocks(attempt.model, attempt.team, [&](std::size_t b) {
     if (is_far_[b] == 0) return;

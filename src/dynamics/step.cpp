@@ -78,6 +78,7 @@ void Stepper::start(State& state) {
 }
 
 void Stepper::resume(State& state) {
+  // To place the surface measures anew how far blocks moved, and the next prediction needs what the last step measured.
   const std::vector<double> moved = state.moved;
   place_surface(model_, state, motion_, team_);
   state.moved = moved;
@@ -174,6 +175,7 @@ void Stepper::find(State& state, const Drive& drive) {
   const Profile::Scope scope(profile_, Phase::detection);
   const bool changed = finder_.find_which(motion_, drive.is_static, state);
   if (changed || !systems_.knows_pairs()) systems_.find_pairs(model_, state);
+  // Its branches are by number of contact, and those are others now.
   if (changed) earlier_attempt_.forget();
 }
 
@@ -325,10 +327,12 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   Drive drive;
   drive.step = t1 - t0;
   drive.end_time = t1;
+  // What the last step owes is an impulse: a shorter step pays it by a larger force.
   drive.owed_share = state.last_step / drive.step;
   drive.wears_joints = model_.joints_wear;
   const bool shi = model_.solver.integrator == TimeIntegration::shi;
   if (ground != nullptr) {
+    // The rule of Shi holds its acceleration through the step: the mean brings the velocity of the record to its end.
     drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);
     drive.ground_before = ground->at(t0);
   }

@@ -18,6 +18,7 @@ StepAccounts::BlockWork StepAccounts::work_of(const Attempt& attempt, std::size_
   const double* d = &attempt.increment[block.first];
   const double* v = &attempt.state.velocity[block.first];
   with_known_size(block.size, [&](auto size) {
+    // What keeps a static step from going on is no inertia: its work is kept by nobody.
     if (drive.is_static) {
       for (int k = 0; k < 2 * size; ++k) work.numerical += inertia * d[k] * d[k];
       return;
@@ -34,6 +35,7 @@ StepAccounts::BlockWork StepAccounts::work_of(const Attempt& attempt, std::size_
     });
   });
   work.input = -block.body_force() * dot(drive.ground_acceleration, {d[0], d[1]});
+  // Some rules balance forces at a moment within the step. There the force has a share of how it was at the start.
   const double of_start = 1.0 - drive.rule[b].end_share_of_work();
   if (of_start == 0.0) return work;
   const double earlier =
@@ -83,6 +85,7 @@ CouplingTotals account_for_couplings(const Attempt& attempt, std::span<const dou
   CouplingTotals totals;
   const std::span<const StepProblem::Part> parts = attempt.problem.parts();
   for (std::size_t k = 0; k < parts.size(); ++k) {
+    // Contacts are the first part, and have their memory elsewhere: State::contacts.
     const std::span<double> memory = k == 0 ? std::span<double>() : state.couplings[k - 1];
     totals += parts[k].coupling->account(attempt, spin, parts[k].first, memory, state);
   }

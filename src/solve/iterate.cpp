@@ -58,6 +58,7 @@ void Iterate::let_go_of_faces(const StepSystem& system, std::size_t c) {
   for (const std::size_t row : rows) before.push_back(springs.faces.force(row));
   springs.faces.pull_no_more(c);
   springs.press_faces();
+  // A row where two faces meet stands in both, and its force is of both.
   std::vector<bool> is_done(springs.size(), false);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (is_done[rows[k]]) continue;
@@ -91,6 +92,7 @@ double Iterate::out_of_balance(const StepSystem& system) {
 }
 
 bool Iterate::is_finite(ThreadTeam& team) const {
+  // One sum in place of a question to each: no number that is not finite leaves a sum finite, as ∞ − ∞ is none either.
   const auto some = [&](std::size_t group) {
     const std::size_t k = group * lane_count;
     return load_first(&gradient[k], static_cast<int>(std::min<std::size_t>(lane_count, gradient.size() - k)));

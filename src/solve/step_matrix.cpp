@@ -26,6 +26,7 @@ void StepMatrix::assemble(const StepSystem& system) {
       places_[c] = Place(system.row(c));
     }
   });
+  // By one thread: rows of several threads meet at a block.
   for (std::size_t c = 0; c < n; ++c) {
     if (has_spring(c)) count_held(system, c, 1);
   }
@@ -70,6 +71,7 @@ bool StepMatrix::update_faces(const StepSystem& system) {
     faces.tangent(f, system.springs().y, now);
     if (std::ranges::equal(now, tangent(f))) continue;
     any = true;
+    // Taken away at the places that it was added at: in a matrix of an earlier step they are not those of now.
     add_face(system, f, -1.0);
     std::ranges::copy(now, tangent(f).begin());
     const std::span<const std::size_t> rows = faces.rows_of(f);
@@ -119,6 +121,7 @@ bool StepMatrix::has_faces(const FaceSprings& faces) const {
 
 bool StepMatrix::update(const StepSystem& system) {
   const SpringArray& springs = system.springs();
+  // What nothing touches was solved for alone, as it lies now; the matrix still has it as it lay when it was assembled.
   const bool turned = !free_.empty();
   for (const std::size_t b : free_) {
     system.problem.terms().assemble_block(b, system.solver);
@@ -134,6 +137,7 @@ bool StepMatrix::update(const StepSystem& system) {
     const double normal = springs.normal_stiffness(c, to), shear = springs.shear_stiffness(c, to),
                  normal_before = std::exchange(normal_stiffness_[c], normal),
                  shear_before = std::exchange(shear_stiffness_[c], shear);
+    // A spring without stiffness, as along a joint without friction, changes nothing by coming or going.
     if (normal == normal_before && shear == shear_before) continue;
     const Place now(system.row(c)), before = std::exchange(places_[c], now);
     if (now == before) {
@@ -154,6 +158,7 @@ bool StepMatrix::update(const StepSystem& system) {
 }
 
 void StepMatrix::find_differing(const StepSystem& system) {
+  // Most iterations change a few rows of thousands: groups that have not changed are passed over by their bytes.
   constexpr std::size_t group = 32;
   const SpringArray& springs = system.springs();
   const auto any_differs_from = [&](std::size_t c) {
@@ -195,6 +200,7 @@ void StepMatrix::carry(std::span<const std::size_t> now, std::size_t gone, std::
 }
 
 void StepMatrix::find_free_blocks(const StepSystem& system, std::span<const std::size_t> updated) {
+  // Rows that are added beside the factor hold their blocks as those in it do.
   for (const std::size_t c : updated) count_held(system, c, 1);
   free_.clear();
   for (std::size_t b = 0; b < held_.size(); ++b) {
