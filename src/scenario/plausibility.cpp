@@ -8,6 +8,7 @@
 #include "rockmass/distribution.h"
 #include "rockmass/intensity.h"
 #include "scenario/build.h"
+#include "scenario/ground_checks.h"
 #include "scenario/inputs.h"
 #include "scenario/joint_warnings.h"
 #include "scenario/key_path.h"
@@ -57,6 +58,7 @@ class Plausibility {
     check_sizes();
     add_load_warnings(scenario_, warnings_);
     add_water_warnings(scenario_, warnings_);
+    add_ground_warnings(scenario_, warnings_);
     return std::move(warnings_);
   }
 

@@ -164,6 +164,7 @@ constexpr std::pair<const char*, bool AcceptedWarnings::*> acceptable[] = {
     {"step", &AcceptedWarnings::step},
     {"damping", &AcceptedWarnings::damping},
     {"closed-box", &AcceptedWarnings::closed_box},
+    {"closed-ground", &AcceptedWarnings::closed_ground},
     {"late-falls", &AcceptedWarnings::late_falls},
     {"lost-joints", &AcceptedWarnings::lost_joints},
     {"loads", &AcceptedWarnings::loads},

@@ -204,7 +204,8 @@ struct AcceptedWarnings {
   bool scale = false;          ///< of a motion that its scale makes weaker than its number
   bool window = false;         ///< of a window that misses most of a record
   bool azimuth = false;  ///< of components of a record that are not normal to each other, or mostly left out
-  bool direction = false;  ///< of a seismic coefficient, or tilt, that pushes into the slope
+  bool closed_ground = false;  ///< of a frame that lies on the ground beside a cut
+  bool direction = false;      ///< of a seismic coefficient, or tilt, that pushes into the slope
 };
 
 struct Scenario {

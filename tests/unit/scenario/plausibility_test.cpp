@@ -116,7 +116,7 @@ TEST(Warnings, ThatAreAcceptedAreNamed) {
       mistakes(two_blocks, {"accept_warnings=['plane-stres']"}),
       HasSubstr(
           "accept_warnings[0]: found the string \"plane-stres\"; expected \"plane-stress\", \"order-1\", "
-          "\"free-boundary\", \"step\", \"damping\", \"closed-box\", \"late-falls\", "
+          "\"free-boundary\", \"step\", \"damping\", \"closed-box\", \"closed-ground\", \"late-falls\", "
           "\"lost-joints\", \"loads\", \"scale\", \"window\", \"azimuth\" or \"direction\"; did you mean "
           "'plane-stress'?"));
   EXPECT_THAT(mistakes(two_blocks, {"accept_warnings='step'"}), HasSubstr("write [\"step\"]"));
