@@ -11,8 +11,10 @@ from pathlib import Path
 from arches import arches
 from boundaries import boundaries
 from dampings import dampings
+from bridges import bridges
 from case_text import FILES, FIXED, NOTE, STIFF_ROCK, G, box, case, largest, number, point, quantity, scenario
 from inclines import inclines
+from interfaces import interfaces
 from joint_pressure import joint_pressure
 from key_blocks import key_blocks
 from limits import limits
@@ -413,7 +415,7 @@ def main():
     parser.add_argument("--check", action="store_true", help="write nothing; say which files differ")
     check = parser.parse_args().check
     for write in (column, direct_shear, bars, chart, arches, inclines, oscillating_base, rocking, key_block, limits,
-                  boundaries, dampings, joint_pressure, weakening, key_blocks, water):
+                  boundaries, dampings, joint_pressure, weakening, key_blocks, water, interfaces, bridges):
         write()
     here = Path(__file__).resolve().parent
     stale = [name for name, text in FILES.items() if not (here / name).is_file() or (here / name).read_text() != text]

@@ -24,6 +24,7 @@
 #include "scenario/cut_summary.h"
 #include "scenario/inputs.h"
 #include "scenario/key_blocks.h"
+#include "scenario/own_joints.h"
 #include "scenario_arguments.h"
 #include "study/census_study.h"
 
@@ -69,8 +70,8 @@ KeyBlocks key_blocks(const CutArguments& arguments, const scenario::Scenario& sc
 std::string picture(const scenario::Scenario& scenario, const scenario::BlockModel& model,
                     const std::vector<cutting::BlockPaint>& paint) {
   cutting::PictureNames names;
-  for (const auto& spec : scenario.joint_sets) names.joint_sets.push_back(spec.set.name);
-  for (const auto& spec : scenario.trace_maps) names.trace_maps.push_back(spec.name);
+  names.joint_sets = scenario::names_of(scenario::own_joint_sets(scenario));
+  names.trace_maps = scenario::names_of(scenario::own_trace_maps(scenario));
   for (const auto& spec : scenario.excavations) names.excavations.push_back(spec.name);
   return cutting::draw_svg(model.system, model.traces, model.outlines, names, paint);
 }

@@ -19,6 +19,7 @@
 #include "scenario/build.h"
 #include "scenario/key_blocks.h"
 #include "scenario/override.h"
+#include "scenario/own_joints.h"
 #include "scenario/parse.h"
 #include "scenario/toml_text.h"
 
@@ -55,8 +56,8 @@ ordered_json to_json(const Node& value) {
 
 api::EdgeNames names_of(const scenario::Scenario& scenario) {
   api::EdgeNames names;
-  for (const auto& spec : scenario.joint_sets) names.joint_sets.push_back(spec.set.name);
-  for (const auto& spec : scenario.trace_maps) names.trace_maps.push_back(spec.name);
+  names.joint_sets = scenario::names_of(scenario::own_joint_sets(scenario));
+  names.trace_maps = scenario::names_of(scenario::own_trace_maps(scenario));
   for (const auto& spec : scenario.excavations) names.excavations.push_back(spec.name);
   return names;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/index.h"
+#include "cutting/interfaces.h"
 #include "cutting/segment_index.h"
 
 namespace keyblock::census {
@@ -99,10 +100,13 @@ std::vector<std::vector<Face>> find_faces(const BlockSystem& system) {
       const Stretch common = common_stretch(edge, edges[at(id)], reach);
       if (common.to > common.from) stretches.push_back(common);
     }
+    const auto label_towards = [&](int block) {
+      return cutting::joint_between(system, at(edge.block), at(block)).value_or(edge.label);
+    };
     std::vector<Face>& own = faces[at(edge.block)];
     const double open = uncovered(stretches, norm(edge.to - edge.from));
     for (const Stretch& s : stretches)
-      own.push_back({edge.from, edge.to, edge.label, s.block, s.to - s.from});
+      own.push_back({edge.from, edge.to, label_towards(s.block), s.block, s.to - s.from});
     if (open <= reach) continue;
     const int beyond = edge.label.kind == EdgeKind::domain ? edge_of_domain : nothing;
     own.push_back({edge.from, edge.to, edge.label, beyond, open});

@@ -57,6 +57,23 @@ bool identify(const Corners& corners, const FoundContact& found, const Candidate
   return same;
 }
 
+/// m, of the edges at a vertex that are of a joint: what belongs to the vertex.
+double length_at(const Surface& surface, int vertex, int joint) {
+  const auto length = [&](int edge, bool is_start) {
+    if (surface.joint[at(edge)] != joint) return 0.0;
+    const double of_start = surface.start_share.empty() ? 0.5 : surface.start_share[at(edge)];
+    return (is_start ? of_start : 1.0 - of_start) *
+           norm(surface.position[at(surface.next[at(edge)])] - surface.position[at(edge)]);
+  };
+  return length(vertex, true) + length(surface.previous[at(vertex)], false);
+}
+
+/// m. A bond keeps its length. But one at a seam has that of the joint that it is left with, once the blocks have moved on.
+double bond_length(const Surface& surface, const Contact& contact, const Memory& memory) {
+  if (contact.at_corner || !surface.has_seam(contact.vertex)) return memory.bond_length;
+  return std::min(memory.bond_length, length_at(surface, contact.vertex, surface.joint[at(contact.edge)]));
+}
+
 /// What the laws of joints make of the length that belongs to each contact. least_length: m, that gives stiffness at the least.
 template <typename SpringLaw>
 void put_springs(std::span<const SpringLaw> of_joints, Lanes least_length, LawLanes& law) {
@@ -90,7 +107,7 @@ void ContactDescription::find_piece(const Surface& surface, const CandidateList&
 void ContactDescription::find_law(const Surface& surface, const Contact& contact, const Beyond& beyond,
                                   SpringLaw& of_contact) const {
   const double penalty = std::min(penalty_[at(contact.block_a)], penalty_[at(contact.block_b)]);
-  const std::size_t joint = at(surface.joint[at(contact.edge)]);
+  const std::size_t joint = at(surface.joint_of(contact.edge, contact.block_a, contact.block_b));
   const bool is_mixed = beyond.share > 0.0 && laws_[at(beyond.joint)] != laws_[joint];
   const JointLaw of_both =
       is_mixed ? mixed(laws_[joint], laws_[at(beyond.joint)], beyond.share, penalty) : JointLaw{};
@@ -148,13 +165,15 @@ bool ContactDescription::describe(const Surface& surface, const Corners& corners
       law.gap[i] = contact.gap;
     }
     const double beyond = geometry.length_beyond[i];
-    const Beyond over_corner{beyond > 0.0 ? beyond / law.length[i] : 0.0, surface.joint[geometry.beyond[i]]};
+    const Beyond over_corner{
+        beyond > 0.0 ? beyond / law.length[i] : 0.0,
+        surface.joint_of(static_cast<int>(geometry.beyond[i]), contact.block_a, contact.block_b)};
     const Memory& memory = before(found[i]);
     contact.memory.state = memory.state;
     contact.memory.bonded = memory.bonded;
     contact.memory.is_torn = memory.is_torn;
     contact.memory.in_face = contact.was_in_face = memory.in_face;
-    if (memory.bonded) law.length[i] = memory.bond_length;
+    if (memory.bonded) law.length[i] = bond_length(surface, contact, memory);
     if (has_memory_) find_piece(surface, candidates, found[i], contact);
     find_law(surface, contact, over_corner, laws[i]);
     contact.fused = laws[i].fused;

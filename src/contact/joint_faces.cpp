@@ -91,7 +91,7 @@ void JointFaces::add_half(const View& view, std::size_t c, int line, int side) {
   const double shared = std::min(end, length) - std::max(begin, 0.0);
   if (shared <= view.tolerances.rounding) return;
   shared_[c] += shared;
-  const JointLaw& law = view.laws[at(surface.joint[at(line)])];
+  const JointLaw& law = view.laws[at(surface.joint_of(line, contact.block_a, contact.block_b))];
   const double penalty = std::min(view.penalty[at(contact.block_a)], view.penalty[at(contact.block_b)]);
   if (!(law.normal_stiffness > 0.0) || law.normal_stiffness >= penalty) return;
   Half half{.low = std::min(line, side), .high = std::max(line, side), .contact = c};

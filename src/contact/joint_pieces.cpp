@@ -13,9 +13,12 @@ int piece_of_new_contact(const JointPieces& pieces, const Surface& surface, int 
   const auto own = std::ranges::lower_bound(pieces, std::pair(vertex, edge), {}, key);
   if (own != pieces.end() && key(*own) == std::pair(vertex, edge))
     return static_cast<int>(own - pieces.begin());
+  const auto joint_of = [&](int of_vertex, int of_edge) {
+    return surface.joint_of(of_edge, surface.block[at(of_vertex)], surface.block[at(of_edge)]);
+  };
   const auto shares = [&](const JointPiece& piece) {
     return piece.is_touched && (piece.vertex == vertex || piece.edge == edge) &&
-           surface.joint[at(piece.edge)] == surface.joint[at(edge)];
+           joint_of(piece.vertex, piece.edge) == joint_of(vertex, edge);
   };
   const JointPiece* least = nullptr;
   for (const JointPiece& piece : pieces) {

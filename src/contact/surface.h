@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -28,16 +30,25 @@ inline CornerKind corner_kind(Vec2 before, Vec2 after) {
   return sine < -sine_concave || dot(before, after) < 0.0 ? CornerKind::concave : CornerKind::reflex;
 }
 
+/// Two blocks that have a joint of their own between them, whichever of their edges meet.
+struct BlockPairJoint {
+  int low = 0, high = 0;  ///< the blocks, ascending
+  int joint = 0;          ///< index of its law
+};
+
 /// The outlines of all blocks as contact sees them: vertices joined by straight edges. Edge k runs from vertex k to
 /// next[k], the block on its left. Blocks of order > 1 have vertices along their edges, which may curve.
 struct Surface {
-  std::vector<int> block_begin;            ///< vertices of block b: block_begin[b] … block_begin[b + 1]
-  std::vector<std::uint8_t> present;       ///< per block: not excavated
-  std::vector<std::uint8_t> fixed;         ///< per block
-  std::vector<double> thickness;           ///< m, per block: area over perimeter
-  std::vector<int> block, next, previous;  ///< per vertex
-  std::vector<CornerKind> kind;            ///< per vertex
-  std::vector<int> joint;                  ///< per edge: index of its joint law
+  std::vector<int> block_begin;             ///< vertices of block b: block_begin[b] … block_begin[b + 1]
+  std::vector<std::uint8_t> present;        ///< per block: not excavated
+  std::vector<std::uint8_t> fixed;          ///< per block
+  std::vector<double> thickness;            ///< m, per block: area over perimeter
+  std::vector<int> block, next, previous;   ///< per vertex
+  std::vector<CornerKind> kind;             ///< per vertex
+  std::vector<int> joint;                   ///< per edge: index of its joint law
+  std::vector<BlockPairJoint> pair_joints;  ///< goes before that of an edge
+  /// Per vertex: a straight side of its block goes on there as another joint; empty: nowhere. A contact there stands for both joints.
+  std::vector<std::uint8_t> is_seam;
   /// Per edge: share that its start has of the length of joint along it, its end having the rest; empty: a half of each.
   std::vector<double> start_share;
   std::vector<DividedEdge> divided;  ///< per edge: what it is a piece of; empty: no edge is divided
@@ -48,6 +59,18 @@ struct Surface {
 
   [[nodiscard]] bool is_reflex(std::size_t vertex) const { return kind[vertex] != CornerKind::convex; }
   [[nodiscard]] bool is_concave(std::size_t vertex) const { return kind[vertex] == CornerKind::concave; }
+  /// Index of the joint law of an edge, for a contact of two blocks.
+  [[nodiscard]] int joint_of(int edge, int block_a, int block_b) const {
+    if (!pair_joints.empty()) {
+      const auto [low, high] = std::minmax(block_a, block_b);
+      for (const BlockPairJoint& pair : pair_joints)
+        if (pair.low == low && pair.high == high) return pair.joint;
+    }
+    return joint[static_cast<std::size_t>(edge)];
+  }
+  [[nodiscard]] bool has_seam(int vertex) const {
+    return !is_seam.empty() && is_seam[static_cast<std::size_t>(vertex)] != 0;
+  }
   [[nodiscard]] int blocks() const { return static_cast<int>(block_begin.size()) - 1; }
   [[nodiscard]] int vertices() const { return static_cast<int>(block.size()); }
 };

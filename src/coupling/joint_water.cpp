@@ -72,7 +72,7 @@ std::vector<JointWater::Load> JointWater::loads_of(const Water& water, const con
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     const WaterFace& face = faces_[f];
     const std::size_t v = at(face.vertex), next = at(surface.next[v]);
-    if (water.dry[v] != 0) continue;
+    if (water.dry[f] != 0) continue;
     loading::WaterTable::Shares shares =
         water.table.shares(reference[v], reference[next], face.from, face.to);
     if (is_shared_by_rule(face)) {
@@ -172,14 +172,14 @@ std::vector<double> JointWater::pressures(const Model& model, const State& state
   const Wetness wet = wetness(model, state, memory);
   for (std::size_t k = 0; k < places.size(); ++k) {
     const auto& [edge, place] = places[k];
-    if (water.dry[at(edge)] != 0) continue;
     const Vec2 from = model.reference[at(edge)],
                along = model.reference[at(model.surface.next[at(edge)])] - from;
     const double s = std::clamp(dot(place - from, along) / dot(along, along), 0.0, 1.0);
     for (auto face = std::ranges::lower_bound(faces_, edge, {}, &WaterFace::vertex);
          face != faces_.end() && face->vertex == edge; ++face) {
       if (s < face->from || s > face->to) continue;
-      pressures[k] = share_wet(*face, wet) * water.weight * water.table.head(place);
+      if (water.dry[static_cast<std::size_t>(face - faces_.begin())] == 0)
+        pressures[k] = share_wet(*face, wet) * water.weight * water.table.head(place);
       break;
     }
   }

@@ -23,7 +23,7 @@ struct Water {
   std::string name;
   loading::WaterTable table;
   double weight = 0.0;            ///< γ, N/m³
-  std::vector<std::uint8_t> dry;  ///< per edge: it never reaches it
+  std::vector<std::uint8_t> dry;  ///< per face: it never reaches it
 };
 
 /// An opening that water may drain into.

@@ -1,4 +1,7 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,9 +12,9 @@ namespace keyblock::cutting {
 
 /// What an edge of a block is a piece of.
 enum class EdgeKind : std::uint8_t {
-  free,        ///< an edge of an explicit block
-  joint_set,   ///< index: of the joint set
-  trace_map,   ///< index: of the trace map
+  free,       ///< an edge of an explicit block
+  joint_set,  ///< index: of the joint set, or of what is like one, after all sets: rock bridges, an interface
+  trace_map,  ///< index: of the trace map
   excavation,  ///< index: of the excavation whose outline it lies on
   domain,      ///< the edge of the domain (where the frame is); index 0
 };
@@ -38,6 +41,7 @@ struct CutStatistics {
   double trace_length = 0.0;    ///< m inside the domain
   double removed_length = 0.0;  ///< m of dead ends and of joints that bound no block (tree cutting)
   int removed_pieces = 0;
+  double bridge_length = 0.0;  ///< m of rock bridges that bound blocks, before cleaning
   int merged_slivers = 0;
   int merged_across_joints = 0;  ///< of these, slivers that were merged across a joint that runs through
   double highest_tooth = 0.0;    ///< m, of the teeth that this left in joints (JointTooth)
@@ -52,6 +56,7 @@ struct JointShare {
   EdgeLabel joint;
   double length = 0.0;   ///< m inside the domain
   double removed = 0.0;  ///< m of these that end in rock or bound no block
+  double bridged = 0.0;  ///< m of rock bridges on its lines, beside its length
 };
 
 /// A place where rock of one wall of a joint reaches into the other, so that the walls hold each other: a sliver was merged across the
@@ -69,8 +74,15 @@ struct SmallBlock {
   double area = 0.0;  ///< m²
 };
 
+/// Two blocks that have a joint of their own between them, wherever they touch.
+struct Interface {
+  std::size_t low = 0, high = 0;  ///< the blocks, ascending
+  EdgeLabel joint;                ///< of kind joint_set
+};
+
 struct BlockSystem {
   std::vector<CutBlock> blocks;
+  std::vector<Interface> interfaces;     ///< no pair twice
   std::vector<JointShare> joints;        ///< one for each set and map that meets the domain
   std::vector<JointTooth> teeth;         ///< in the order of cutting
   std::vector<SmallBlock> slivers_left;  ///< in the order of the blocks
@@ -79,5 +91,12 @@ struct BlockSystem {
   /// so far from the origin that digits would be lost (a map in national coordinates).
   Vec2 origin;
 };
+
+/// m, √ of the mean area of the blocks.
+inline double mean_block_size(const BlockSystem& system) {
+  double sum = 0.0;
+  for (const CutBlock& block : system.blocks) sum += area(block.polygon);
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(system.blocks.size(), 1)));
+}
 
 }  // namespace keyblock::cutting

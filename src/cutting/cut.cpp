@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/index.h"
+#include "cutting/bridges.h"
 #include "cutting/cleaning.h"
 #include "cutting/linework.h"
 #include "cutting/noding.h"
@@ -74,36 +75,88 @@ JointShare& share_of(EdgeLabel joint, std::vector<JointShare>& shares) {
   return found != shares.end() ? *found : shares.emplace_back(JointShare{joint, 0.0, 0.0});
 }
 
-/// Takes away what bounds no block, and counts it.
-PlanarGraph bounded_blocks(NodedLinework noded, const std::vector<int>& trace_of_piece, BlockSystem& system) {
-  CutStatistics& statistics = system.statistics;
-  PlanarGraph& graph = noded.graph;
-  TraceMarks meeting(trace_of_piece), used(trace_of_piece);
-  for (std::size_t e = 0; e < graph.edges.size(); ++e) {
-    meeting.add(noded.traces[e]);
-    const GraphEdge& edge = graph.edges[e];
-    if (is_joint(edge.label)) share_of(edge.label, system.joints).length += graph.length(edge);
-  }
-  std::vector<std::pair<int, int>> ends;
-  ends.reserve(graph.edges.size());
-  for (const GraphEdge& edge : graph.edges) ends.emplace_back(edge.from, edge.to);
-  const std::vector<GraphEdge> removed = graph.remove_trees();
-  for (const GraphEdge& edge : removed) share_of(edge.label, system.joints).removed += graph.length(edge);
-  for (const JointShare& share : system.joints) {
-    statistics.trace_length += share.length;
-    statistics.removed_length += share.removed;
-  }
-  statistics.removed_pieces += static_cast<int>(removed.size());
-  // What is left keeps its order.
-  std::size_t e = 0;
-  for (const GraphEdge& edge : graph.edges) {
-    while (ends[e] != std::pair(edge.from, edge.to)) ++e;
-    used.add(noded.traces[e]);
-  }
-  statistics.traces = meeting.count();
-  statistics.joints_used = used.count();
-  return std::move(graph);
+/// All that is cut along as a trace: those of joints, then bridges in gaps.
+std::vector<rockmass::Trace> all_traces(const CutInput& input) {
+  std::vector<rockmass::Trace> traces = input.traces;
+  if (input.bridges)
+    traces.insert(traces.end(), input.bridges->in_gaps.begin(), input.bridges->in_gaps.end());
+  return traces;
 }
+
+NodedLinework noded_with_bridges(const CutInput& input, const std::vector<rockmass::Trace>& traces,
+                                 double snapping, Linework& work) {
+  NodedLinework noded = node(work);
+  if (!input.bridges || !input.bridges->at_dead_ends) return noded;
+  const std::vector<SourceLine> bridges =
+      bridges_from_dead_ends(work, noded, traces, snapping, input.bridges->label);
+  work.lines.insert(work.lines.end(), bridges.begin(), bridges.end());
+  return node(work);
+}
+
+/// Takes away what bounds no block, and counts it.
+class Bounded {
+ public:
+  Bounded(const CutInput& input, const std::vector<rockmass::Trace>& traces, NodedLinework& noded,
+          BlockSystem& system)
+      : input_(input),
+        traces_(traces),
+        noded_(noded),
+        system_(system),
+        numbers_(rockmass::trace_numbers(traces)) {}
+
+  void run() {
+    CutStatistics& statistics = system_.statistics;
+    PlanarGraph& graph = noded_.graph;
+    TraceMarks meeting(numbers_), used(numbers_);
+    for (std::size_t e = 0; e < graph.edges.size(); ++e) {
+      const GraphEdge& edge = graph.edges[e];
+      if (is_bridge(edge)) {
+        share_of(joint_of(e), system_.joints).bridged += graph.length(edge);
+        continue;
+      }
+      meeting.add(noded_.traces[e]);
+      if (is_joint(edge.label)) share_of(edge.label, system_.joints).length += graph.length(edge);
+    }
+    const std::vector<GraphEdge> before = graph.edges;
+    const std::vector<GraphEdge> removed = graph.remove_trees();
+    for (const GraphEdge& edge : removed) {
+      if (!is_bridge(edge)) share_of(edge.label, system_.joints).removed += graph.length(edge);
+    }
+    // What is left keeps its order.
+    std::size_t left = 0;
+    for (std::size_t e = 0; e < before.size(); ++e) {
+      const GraphEdge& edge = before[e];
+      const bool is_left =
+          left < graph.edges.size() && graph.edges[left].from == edge.from && graph.edges[left].to == edge.to;
+      if (is_left) ++left;
+      if (is_left && !is_bridge(edge)) used.add(noded_.traces[e]);
+      if (!is_left && is_bridge(edge)) share_of(joint_of(e), system_.joints).bridged -= graph.length(edge);
+    }
+    for (const JointShare& share : system_.joints) {
+      statistics.trace_length += share.length;
+      statistics.removed_length += share.removed;
+      statistics.bridge_length += share.bridged;
+    }
+    statistics.removed_pieces += static_cast<int>(removed.size());
+    statistics.traces = meeting.count();
+    statistics.joints_used = used.count();
+  }
+
+ private:
+  [[nodiscard]] bool is_bridge(const GraphEdge& edge) const {
+    return input_.bridges && edge.label == input_.bridges->label;
+  }
+  /// The joint on whose line a bridge lies.
+  [[nodiscard]] EdgeLabel joint_of(std::size_t e) const {
+    return label_of(traces_[at(noded_.traces[e].front())].source);
+  }
+
+  const CutInput& input_;
+  const std::vector<rockmass::Trace>& traces_;
+  NodedLinework& noded_;
+  BlockSystem& system_;
+  std::vector<int> numbers_;  ///< of traces
+};
 
 /// A point inside the face: the middle of the widest stretch of a horizontal line through it.
 Vec2 interior_point(const PlanarGraph& graph, const Face& face) {
@@ -192,7 +245,7 @@ void sort_blocks(std::vector<CutBlock>& blocks) {
 BlockSystem cut(const CutInput& input) {
   const double rough_area = std::abs(signed_area(input.domain));
   const CutTolerances tolerances = input.tolerances.value_or(CutTolerances::for_domain(rough_area));
-  const Linework work = make_linework(input, tolerances);
+  Linework work = make_linework(input, tolerances);
 
   BlockSystem system;
   CutStatistics& statistics = system.statistics;
@@ -201,7 +254,10 @@ BlockSystem cut(const CutInput& input) {
       work.grid * std::max(bounds({work.domain, {}}).size().x, bounds({work.domain, {}}).size().y);
   if (norm(work.shift) > far_away * size) system.origin = work.shift;
 
-  PlanarGraph graph = bounded_blocks(node(work), rockmass::trace_numbers(input.traces), system);
+  const std::vector<rockmass::Trace> traces = all_traces(input);
+  NodedLinework noded = noded_with_bridges(input, traces, tolerances.snapping, work);
+  Bounded(input, traces, noded, system).run();
+  PlanarGraph& graph = noded.graph;
   graph.trace_faces();
   cluster_vertices(graph, vertex_rounding * graph.grid);
   snap_vertices_to_edges(graph, edge_rounding * graph.grid);

@@ -42,6 +42,13 @@ struct CutTolerances {
   static CutTolerances for_size(double size);
 };
 
+/// Where rock bridges are cut along with the joints, as joints of their own.
+struct BridgeInput {
+  EdgeLabel label;                         ///< of kind joint_set, after all sets
+  std::vector<rockmass::Trace> in_gaps{};  ///< between two traces on one line; source: of these
+  bool at_dead_ends = false;               ///< traces that end in rock go on to the next line as bridges
+};
+
 /// What is cut. Real coordinates; rings in either sense.
 struct CutInput {
   Ring domain;
@@ -49,12 +56,14 @@ struct CutInput {
   std::vector<Ring> excavations;            ///< outlines, by index of the excavation
   std::optional<CutTolerances> tolerances;  ///< default: CutTolerances::for_domain
   JointStrengths strengths{};               ///< default: all joints are alike
+  std::optional<BridgeInput> bridges{};     ///< none: what ends in rock bounds no block
 };
 
 /// Cuts the domain by traces and excavation outlines into blocks.
 ///
 /// 1. Ends of traces within `snapping` of another line are put on it; everything is rounded to a grid of about
 ///    L·2⁻⁴⁴ and noded there by snap rounding (GEOS): lines meet in common vertices only.
+///    Rock bridges are lines like others, those from dead ends (bridges.h) found before the last noding.
 /// 2. Dead ends and joints that bound no block are removed (tree cutting): after that the two sides of every edge
 ///    are different blocks. A ring of joints within a block makes a hole in it and a block of its own.
 /// 3. Cleaning: slivers are merged into a neighbour, smallest first, never across an excavation outline, and not across a weak plane

@@ -26,6 +26,7 @@ void visit_cutting(Statistics& s, const Visit& visit) {
   visit(CutField{"merged_across_joints", nullptr, true}, s.merged_across_joints);
   visit(CutField{"highest_tooth_m", "highest_tooth", true}, s.highest_tooth);
   visit(CutField{"slivers_left", nullptr, true}, s.slivers_left);
+  visit(CutField{"bridge_length_m", nullptr, true}, s.bridge_length);
 }
 
 /// All of them, or those of the object `cutting` in summary.json.

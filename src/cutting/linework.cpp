@@ -219,11 +219,6 @@ void snap_outline(Ring& outline, const Ring& domain, double reach) {
   }
 }
 
-EdgeLabel label_of(rockmass::TraceSource source) {
-  const bool statistical = source.kind == rockmass::TraceSource::Kind::joint_set;
-  return {statistical ? EdgeKind::joint_set : EdgeKind::trace_map, static_cast<std::int16_t>(source.index)};
-}
-
 // Real coordinates have steps of their own, the larger the farther they are from 0. Where vertices may stay within such steps of each
 // other the grid is no finer, so that blocks keep their shape when the shift is added.
 double grid_of(const Box& box, int exponent, double cluster) {
@@ -235,7 +230,25 @@ double grid_of(const Box& box, int exponent, double cluster) {
   return cluster < many_steps * step ? std::max(grid, step) : grid;
 }
 
+/// They are traces after those of the joints.
+void add_bridges_in_gaps(const CutInput& input, const Box& window, Linework& work) {
+  if (!input.bridges) return;
+  int number = static_cast<int>(input.traces.size());
+  for (const rockmass::Trace& gap : input.bridges->in_gaps) {
+    const int trace = number++;
+    Vec2 a = gap.a, b = gap.b;
+    if (!clip(window, a, b)) continue;
+    const GridPoint from = work.to_grid(a), to = work.to_grid(b);
+    if (!(from == to)) work.lines.push_back({from, to, input.bridges->label, trace});
+  }
+}
+
 }  // namespace
+
+EdgeLabel label_of(rockmass::TraceSource source) {
+  const bool statistical = source.kind == rockmass::TraceSource::Kind::joint_set;
+  return {statistical ? EdgeKind::joint_set : EdgeKind::trace_map, static_cast<std::int16_t>(source.index)};
+}
 
 Linework make_linework(const CutInput& input, const CutTolerances& tolerances) {
   const double snapping = tolerances.snapping;
@@ -276,6 +289,7 @@ Linework make_linework(const CutInput& input, const CutTolerances& tolerances) {
     if (!(from == to))
       work.lines.push_back({from, to, label_of(input.traces[k].source), static_cast<int>(k)});
   }
+  add_bridges_in_gaps(input, window, work);
   EndSnapper(work.lines, bounds({work.domain, {}}), std::max(snapping / work.grid, rounding_reach)).run();
   std::erase_if(work.lines, [](const SourceLine& line) { return line.a == line.b && line.nodes.empty(); });
   return work;

@@ -13,7 +13,8 @@ struct SourceLine {
   GridPoint b;
   /// For a line of the domain, index counts the edges of its ring, so that corners can be told.
   EdgeLabel label;
-  int trace = -1;  ///< index into the input's traces; −1: a piece of the domain or of an outline
+  int trace =
+      -1;  ///< index into the input's traces, then its bridges in gaps; −1: a piece of the domain or of an outline
   std::vector<GridPoint> nodes{};  ///< points on the line where a trace was made to end
 };
 
@@ -28,6 +29,9 @@ struct Linework {
 
   [[nodiscard]] GridPoint to_grid(Vec2 real) const { return nearest_grid_point((real - shift) / grid); }
 };
+
+/// Of the pieces of a trace.
+EdgeLabel label_of(rockmass::TraceSource source);
 
 /// Checks the rings, chooses the grid and puts the ends of traces on the lines within the snapping distance of them.
 /// Traces are clipped to a box a little larger than the domain. Throws InputError.

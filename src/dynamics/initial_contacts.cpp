@@ -19,6 +19,17 @@ Vec2 place_of(const Model& model, const contact::Contact& c) {
   return lerp(surface.position[at(c.edge)], surface.position[at(surface.next[at(c.edge)])], c.position);
 }
 
+const contact::JointLaw& law_of(const Model& model, const contact::Contact& c, int edge) {
+  return model.laws[at(model.surface.joint_of(edge, c.block_a, c.block_b))];
+}
+
+/// The law that says whether a contact is bonded, and remembers: at a seam that of the joint that has a bond.
+const contact::JointLaw& law_of(const Model& model, const contact::Contact& c) {
+  const contact::JointLaw& own = law_of(model, c, c.edge);
+  if (own.may_bond() || !c.at_corner || !model.surface.has_seam(c.vertex)) return own;
+  return law_of(model, c, (c.position < 0.5 ? model.surface.previous : model.surface.next)[at(c.edge)]);
+}
+
 /// Pa, of the water in the joint at each contact; empty where there is no water.
 std::vector<double> water_pressures(const Model& model, const State& state,
                                     std::span<const contact::Contact> contacts) {
@@ -52,15 +63,15 @@ double carry_stress(const Model& model, const contact::JointLaw& law, double of_
 /// Pieces of joint for the contacts that `in_place` names, into contacts, whose laws have memory.
 void make_pieces(const Model& model, const std::vector<std::size_t>& in_place,
                  std::span<contact::Contact> contacts, contact::JointPieces& pieces) {
-  const auto law = [&](const contact::Contact& c) { return model.laws[at(model.surface.joint[at(c.edge)])]; };
   pieces.clear();
   for (const std::size_t k : in_place) {
     const contact::Contact& c = contacts[k];
-    if (law(c).has_memory()) pieces.push_back({.vertex = c.vertex, .edge = c.edge, .is_touched = true});
+    if (law_of(model, c).has_memory())
+      pieces.push_back({.vertex = c.vertex, .edge = c.edge, .is_touched = true});
   }
   std::ranges::sort(pieces, {}, [](const contact::JointPiece& p) { return std::pair(p.vertex, p.edge); });
   for (contact::Contact& c : contacts) {
-    if (!law(c).has_memory()) continue;
+    if (!law_of(model, c).has_memory()) continue;
     c.memory.piece = contact::piece_of_new_contact(pieces, model.surface, c.vertex, c.edge);
     c.memory.worn = c.memory.piece < 0 ? contact::JointLaw::worn_out : 0.0;
   }
@@ -78,7 +89,7 @@ double begin_contacts(const Model& model, const State& state, const contact::Tol
     contact::Contact& c = contacts[k];
     if (std::abs(c.gap) > tolerances.in_place || c.length <= tolerances.rounding) continue;
     in_place.push_back(k);
-    const contact::JointLaw& law = model.laws[at(model.surface.joint[at(c.edge)])];
+    const contact::JointLaw& law = law_of(model, c);
     c.memory.bonded = law.may_bond();
     if (c.memory.bonded) {
       c.memory.bond_length = c.length;

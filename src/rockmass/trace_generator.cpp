@@ -143,6 +143,12 @@ class Generator {
     each_line([&](int number, double position) { add_line(number, position); });
     return std::move(traces_);
   }
+  /// As run(), of the gaps between them.
+  std::vector<Trace> run_for_gaps() {
+    wants_gaps_ = true;
+    run();
+    return std::move(gaps_);
+  }
 
  private:
   [[nodiscard]] RandomStream line_stream(std::uint32_t number) const {
@@ -156,7 +162,12 @@ class Generator {
       return length(i) + quantile(set_.gap, draw(stream, i, Draw::gap));
     };
     const Start start = stationary_start(stream, cycle);
-    const auto add = [&](std::uint32_t i, double begin) { add_trace(stream, i, position, begin, length(i)); };
+    std::vector<OnLine> of_line;
+    const auto add = [&](std::uint32_t i, double begin) {
+      const OnLine trace = trace_of(stream, i, position, begin, length(i));
+      add_trace(trace);
+      if (wants_gaps_) of_line.push_back(trace);
+    };
     add(start.interval, -start.offset);
     double begin = cycle(start.interval) - start.offset;
     for (int k = 1; begin <= half_along_; begin += cycle(folded(k++))) add(folded(k), begin);
@@ -165,10 +176,18 @@ class Generator {
       end -= cycle(folded(k));
       add(folded(k), end);
     }
+    std::ranges::sort(of_line, {}, &OnLine::begin);
+    for (std::size_t k = 0; k + 1 < of_line.size(); ++k) add_gap(of_line[k].b, of_line[k + 1].a);
   }
 
-  void add_trace(const RandomStream& stream, std::uint32_t interval, double position, double begin,
-                 double length) {
+  /// A trace, and where it begins on its line, m.
+  struct OnLine {
+    double begin = 0.0;
+    Vec2 a, b;
+  };
+
+  [[nodiscard]] OnLine trace_of(const RandomStream& stream, std::uint32_t interval, double position,
+                                double begin, double length) const {
     const Vec2 middle = centre_ + position * perpendicular(along_) + (begin + 0.5 * length) * along_;
     Vec2 direction = along_;
     if (scattered_) {
@@ -178,10 +197,17 @@ class Generator {
           set_.dip_direction_std * inverse_normal_cdf(draw(stream, interval, Draw::dip_direction));
       direction = direction_of(apparent_dip(dip, dip_direction, azimuth_));
     }
-    const Vec2 a = on_grid(middle - 0.5 * length * direction);
-    const Vec2 b = on_grid(middle + 0.5 * length * direction);
+    return {begin, on_grid(middle - 0.5 * length * direction), on_grid(middle + 0.5 * length * direction)};
+  }
+
+  void add_trace(const OnLine& trace) {
     if (++drawn_ > max_traces) refuse(set_, fmt::format("more than {:.0g}", max_traces));
-    if (!(a == b) && meets(window_, a, b)) traces_.push_back({a, b, source_});
+    if (!(trace.a == trace.b) && meets(window_, trace.a, trace.b))
+      traces_.push_back({trace.a, trace.b, source_});
+  }
+
+  void add_gap(Vec2 a, Vec2 b) {
+    if (!(a == b) && meets(window_, a, b)) gaps_.push_back({a, b, source_});
   }
 
   static Vec2 on_grid(Vec2 p) {
@@ -203,6 +229,8 @@ class Generator {
   double half_across_ = 0.0;  ///< half the stretch across the lines, m
   double drawn_ = 0.0;        ///< traces so far, with those beside the window
   std::vector<Trace> traces_;
+  bool wants_gaps_ = false;
+  std::vector<Trace> gaps_;
 };
 
 }  // namespace
@@ -217,6 +245,11 @@ std::vector<Trace> generate_traces(const JointSet& set, int set_index, double se
   const double expected = generator.expected();
   if (!(expected <= max_traces)) refuse(set, fmt::format("about {:.2g}", expected));
   return generator.run();
+}
+
+std::vector<Trace> gaps_of_traces(const JointSet& set, int set_index, double section_azimuth,
+                                  const Box& window, std::uint64_t seed, int realization) {
+  return Generator(set, set_index, section_azimuth, window, seed, realization).run_for_gaps();
 }
 
 }  // namespace keyblock::rockmass

@@ -36,4 +36,8 @@ double expected_traces(const JointSet& set, double section_azimuth, const Box& w
 std::vector<Trace> generate_traces(const JointSet& set, int set_index, double section_azimuth,
                                    const Box& window, std::uint64_t seed, int realization);
 
+/// The gaps between these traces that meet `window`: from the end of each to the beginning of the next one on its line.
+std::vector<Trace> gaps_of_traces(const JointSet& set, int set_index, double section_azimuth,
+                                  const Box& window, std::uint64_t seed, int realization);
+
 }  // namespace keyblock::rockmass

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/out_of_memory.h"
 #include "cutting/cut.h"
+#include "cutting/interfaces.h"
 #include "rockmass/intensity.h"
 #include "rockmass/trace_generator.h"
 #include "scenario/build.h"
@@ -15,6 +16,7 @@
 #include "scenario/expected_blocks.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
+#include "scenario/own_joints.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -63,8 +65,10 @@ cutting::JointStrengths joint_strengths(const Scenario& scenario) {
            stress * std::tan(friction * std::numbers::pi / 180.0);
   };
   cutting::JointStrengths strengths{.standard = strength({})};
-  for (const JointSetSpec& spec : scenario.joint_sets) strengths.joint_sets.push_back(strength(spec.joints));
-  for (const TraceMapSpec& spec : scenario.trace_maps) strengths.trace_maps.push_back(strength(spec.joints));
+  for (const OwnJoints& joints : own_joint_sets(scenario))
+    strengths.joint_sets.push_back(strength(joints.keys));
+  for (const OwnJoints& joints : own_trace_maps(scenario))
+    strengths.trace_maps.push_back(strength(joints.keys));
   return strengths;
 }
 
@@ -83,6 +87,19 @@ std::vector<rockmass::Trace> generate(const Scenario& scenario, std::size_t k, c
     }
     throw InputError(std::move(diagnostics));
   }
+}
+
+cutting::BridgeInput bridges_of(const Scenario& scenario, const Box& window, int realization) {
+  cutting::BridgeInput bridges{.label = label_of_bridges(scenario),
+                               .at_dead_ends = scenario.cutting.bridges_dead_ends};
+  for (std::size_t k = 0; k < scenario.joint_sets.size(); ++k) {
+    const JointSetSpec& spec = scenario.joint_sets[k];
+    if (!spec.gap_bonds) continue;
+    const auto gaps = rockmass::gaps_of_traces(spec.set, static_cast<int>(k), *scenario.section_azimuth,
+                                               window, scenario.seed, realization);
+    bridges.in_gaps.insert(bridges.in_gaps.end(), gaps.begin(), gaps.end());
+  }
+  return bridges;
 }
 
 // What the cutter refuses, an outline of no size beside the domain, shows at the excavation in the file.
@@ -129,6 +146,7 @@ void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
   input.excavations = model.outlines;
   input.tolerances = tolerances_of(scenario.cutting, window, model.traces);
   input.strengths = joint_strengths(scenario);
+  if (scenario.rock_bridge) input.bridges = bridges_of(scenario, window, realization);
   check_expected_blocks(scenario, input, window);
   try {
     model.system =
@@ -161,6 +179,21 @@ cutting::CutBlock explicit_block(const BlockSpec& spec, const std::vector<Ring>&
   return block;
 }
 
+void place_interfaces(const Scenario& scenario, cutting::BlockSystem& system) {
+  const std::size_t first = system.blocks.size() - scenario.blocks.size();
+  const auto number = [&](const std::string& name) {
+    const auto block = std::ranges::find(scenario.blocks, name, &BlockSpec::name);
+    return first + static_cast<std::size_t>(block - scenario.blocks.begin());
+  };
+  cutting::EdgeLabel joint = label_of_first_interface(scenario);
+  for (const InterfaceSpec& spec : scenario.interfaces) {
+    const auto [low, high] = std::minmax({number(spec.between.first), number(spec.between.second)});
+    system.interfaces.push_back({low, high, joint});
+    ++joint.index;
+  }
+  cutting::label_interfaces(system);
+}
+
 }  // namespace
 
 BlockModel build_blocks(const Scenario& scenario, int realization) {
@@ -174,6 +207,7 @@ BlockModel build_blocks(const Scenario& scenario, int realization) {
   for (const BlockSpec& spec : scenario.blocks) {
     model.system.blocks.push_back(explicit_block(spec, model.outlines, model.system.origin));
   }
+  place_interfaces(scenario, model.system);
   return model;
 }
 

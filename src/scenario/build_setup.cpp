@@ -15,6 +15,7 @@
 #include "scenario/key_path.h"
 #include "scenario/magnitudes.h"
 #include "scenario/motion_places.h"
+#include "scenario/own_joints.h"
 #include "scenario/polygon_checks.h"
 #include "scenario/properties.h"
 #include "scenario/sections.h"
@@ -195,8 +196,8 @@ void place_rock(const Scenario& scenario, const BlockModel& blocks, RunSetup& se
                     Vec2{domain.x.second, domain.y.second} - origin};
   }
   setup.joints = joint_table(scenario);
-  for (const JointSetSpec& spec : scenario.joint_sets) setup.joint_set_names.push_back(spec.set.name);
-  for (const TraceMapSpec& spec : scenario.trace_maps) setup.trace_map_names.push_back(spec.name);
+  setup.joint_set_names = names_of(own_joint_sets(scenario));
+  setup.trace_map_names = names_of(own_trace_maps(scenario));
   for (std::size_t k = 0; k < scenario.excavations.size(); ++k) {
     Ring outline = blocks.outlines[k];
     for (Vec2& p : outline) p -= origin;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scenario/excavated_blocks.h"
+#include "scenario/own_joints.h"
 
 namespace keyblock::scenario {
 namespace {
@@ -51,8 +52,7 @@ double stiffest_joint(const Scenario& scenario) {
     if (joints.normal_stiffness) most = std::max(most, *joints.normal_stiffness / standard);
   };
   see(scenario.joints);
-  for (const JointSetSpec& spec : scenario.joint_sets) see(spec.joints);
-  for (const TraceMapSpec& spec : scenario.trace_maps) see(spec.joints);
+  for (const OwnJoints& joints : own_joints(scenario)) see(joints.keys);
   return most;
 }
 

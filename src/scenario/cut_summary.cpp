@@ -13,11 +13,20 @@
 #include "cutting/edge_name.h"
 #include "rockmass/intensity.h"
 #include "rockmass/section.h"
+#include "scenario/own_joints.h"
 
 namespace keyblock::scenario {
 namespace {
 
 using nlohmann::ordered_json;
+
+/// m of rock bridges on the lines of a joint set.
+double bridged_length(const cutting::BlockSystem& system, int set) {
+  const auto share = std::ranges::find(
+      system.joints, cutting::EdgeLabel{cutting::EdgeKind::joint_set, static_cast<std::int16_t>(set)},
+      &cutting::JointShare::joint);
+  return share != system.joints.end() ? share->bridged : 0.0;
+}
 
 ordered_json joint_sets(const Scenario& scenario, const BlockModel& model) {
   ordered_json sets = ordered_json::array();
@@ -36,6 +45,7 @@ ordered_json joint_sets(const Scenario& scenario, const BlockModel& model) {
                     {"spacing_factor", rockmass::trace_spacing_factor(set.dip, set.dip_direction, azimuth)},
                     {"traces", intensity.traces},
                     {"trace_length_m", intensity.length},
+                    {"bridge_length_m", bridged_length(model.system, static_cast<int>(k))},
                     {"p21_per_m", intensity.p21},
                     {"p20_per_m2", intensity.p20},
                     {"p10_across_per_m", intensity.p10_across},
@@ -45,11 +55,10 @@ ordered_json joint_sets(const Scenario& scenario, const BlockModel& model) {
 }
 
 std::string joint_name(const Scenario& scenario, cutting::EdgeLabel label) {
-  std::vector<std::string> sets, maps, excavations;
-  for (const JointSetSpec& spec : scenario.joint_sets) sets.push_back(spec.set.name);
-  for (const TraceMapSpec& spec : scenario.trace_maps) maps.push_back(spec.name);
+  std::vector<std::string> excavations;
   for (const ExcavationSpec& spec : scenario.excavations) excavations.push_back(spec.name);
-  return cutting::edge_name(label, sets, maps, excavations);
+  return cutting::edge_name(label, names_of(own_joint_sets(scenario)), names_of(own_trace_maps(scenario)),
+                            excavations);
 }
 
 ordered_json teeth_json(const Scenario& scenario, const cutting::BlockSystem& system) {

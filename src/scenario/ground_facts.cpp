@@ -70,6 +70,9 @@ class Facts {
     rock();
     joints();
     for (const JointSetSpec& spec : scenario_.joint_sets) set(spec);
+    if (scenario_.rock_bridge) add("rock bridges", own(scenario_.rock_bridge->joints, "as all joints"));
+    for (const InterfaceSpec& spec : scenario_.interfaces)
+      add(quoted("interface", spec.name), own(spec.joints, "as all joints"));
     for (const TraceMapSpec& spec : scenario_.trace_maps)
       add(quoted("trace map", spec.name), own(spec.joints, "as all joints"));
     for (const RegionSpec& spec : scenario_.regions) add(quoted("region", spec.name), own_rock(spec.rock));

@@ -128,6 +128,10 @@ std::string joints_in_model(const Scenario& scenario, const cutting::BlockSystem
     text += fmt::format("{}{} {:.0f} %", text.empty() ? "" : ", ", name_of(scenario, share.joint),
                         100.0 * (1.0 - share.removed / share.length));
   }
+  for (const cutting::JointShare& share : system.joints) {
+    if (share.bridged > 0.0)
+      text += fmt::format(", {:.4g} m of rock bridges on {}", share.bridged, name_of(scenario, share.joint));
+  }
   return text;
 }
 

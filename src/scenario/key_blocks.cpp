@@ -9,6 +9,7 @@
 #include "core/checked_json.h"
 #include "core/index.h"
 #include "cutting/edge_name.h"
+#include "scenario/own_joints.h"
 #include "scenario/properties.h"
 
 namespace keyblock::scenario {
@@ -140,9 +141,9 @@ std::vector<std::string> census_notes(const Scenario& scenario) {
 }
 
 std::vector<std::string> sliding_joints(const Scenario& scenario, const census::KeyBlock& block) {
-  std::vector<std::string> sets, maps, names;
-  for (const JointSetSpec& spec : scenario.joint_sets) sets.push_back(spec.set.name);
-  for (const TraceMapSpec& spec : scenario.trace_maps) maps.push_back(spec.name);
+  const std::vector<std::string> sets = names_of(own_joint_sets(scenario)),
+                                 maps = names_of(own_trace_maps(scenario));
+  std::vector<std::string> names;
   for (const cutting::EdgeLabel label : block.joints) {
     std::string name = cutting::edge_name(label, sets, maps, {});
     if (name.empty()) name = label.kind == cutting::EdgeKind::domain ? "domain" : "[joints]";

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "scenario/own_joints.h"
+
 namespace keyblock::scenario {
 namespace {
 
@@ -90,12 +92,10 @@ std::vector<simulation::BlockProperties> properties_of(const Scenario& scenario,
 simulation::JointTable joint_table(const Scenario& scenario) {
   simulation::JointTable table;
   table.standard = joint_properties(scenario.joints, {});
-  for (const JointSetSpec& spec : scenario.joint_sets) {
-    table.joint_sets.push_back(joint_properties(spec.joints, scenario.joints));
-  }
-  for (const TraceMapSpec& spec : scenario.trace_maps) {
-    table.trace_maps.push_back(joint_properties(spec.joints, scenario.joints));
-  }
+  for (const OwnJoints& joints : own_joint_sets(scenario))
+    table.joint_sets.push_back(joint_properties(joints.keys, scenario.joints));
+  for (const OwnJoints& joints : own_trace_maps(scenario))
+    table.trace_maps.push_back(joint_properties(joints.keys, scenario.joints));
   table.frame = table.standard;
   table.frame.friction = scenario.domain ? scenario.domain->frame_friction : 0.0;
   table.frame.cohesion = table.frame.tension = 0.0;

@@ -231,9 +231,9 @@ void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standar
   read_distribution(t, "spacing", set.spacing, false, "Distance of neighbouring joints.");
   read_distribution(t, "length", set.length, false, "Length of a trace in the section.");
   read_distribution(t, "gap", set.gap, true, "Rock bridge between two traces on one line; 0: none.");
-  read_joint_keys(t, spec.joints, set_defaults);
-  read_set_keys(t, spec.joints);
-  check_joint_keys(t, spec.joints, standard);
+  t.boolean("gap_bonds", spec.gap_bonds,
+            {.meaning = "The gaps are joints as well, with the strength of [rock_bridge]."});
+  read_joint_keys_of(t, spec.joints, standard);
 }
 
 void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard) {
@@ -267,28 +267,33 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
           .required = !t.documenting() && !given.empty() && !has_file,
           .fallback = "that of the file"});
   if (map.name.empty()) map.name = map.file.stem().string();
-  read_joint_keys(t, map.joints, set_defaults);
-  read_set_keys(t, map.joints);
-  check_joint_keys(t, map.joints, standard);
+  read_joint_keys_of(t, map.joints, standard);
 }
 
 }  // namespace
+
+void read_joint_keys_of(TableReader& t, JointKeys& joints, const JointKeys& standard) {
+  read_joint_keys(t, joints, set_defaults);
+  read_set_keys(t, joints);
+  check_joint_keys(t, joints, standard);
+}
 
 void read_joints(TableReader& root, Scenario& scenario) {
   const Value* blocks = root.find("block");
   const bool has_contacts = root.find("domain") != nullptr || (blocks != nullptr && blocks->items.size() > 1);
   root.table(
       "joints",
-      {.meaning = "Properties of all contacts; joint sets and trace maps may have their own. Needed as soon "
-                  "as there are two blocks.",
+      {.meaning =
+           "Properties of all contacts; joint sets, trace maps and interfaces may have their own. Needed "
+           "as soon as there are two blocks.",
        .required = has_contacts},
       [&](TableReader& t) {
         read_joint_keys(t, scenario.joints, joint_defaults);
         t.number(
             "strength_factor", scenario.joints.strength_factor,
             {.meaning = "tan(friction), cohesion and tension, residual strength too, are divided by it: the "
-                        "value at which rock just falls is a factor of safety. It is that of sets and trace "
-                        "maps that give none. The frame keeps its friction.",
+                        "value at which rock just falls is a factor of safety. It is that of sets, trace "
+                        "maps and interfaces that give none. The frame keeps its friction.",
              .above = 0.0,
              .fallback = "1",
              .usual = &usual::strength_factor});
@@ -301,10 +306,16 @@ void read_joints(TableReader& root, Scenario& scenario) {
   root.tables("trace_map", scenario.trace_maps,
               {.meaning = "Joints mapped one by one, straight or as polylines."},
               [&](TableReader& t, TraceMapSpec& map) { read_trace_map(t, map, scenario.joints); });
+  root.table(
+      "rock_bridge",
+      {.meaning = "Rock that a crack has to break through: joints in gaps (`gap_bonds` of a joint set) and "
+                  "before dead ends (`dead_ends` of [cutting]), which is rock until it breaks."},
+      [&](TableReader& t) { read_joint_keys_of(t, scenario.rock_bridge.emplace().joints, scenario.joints); });
   std::vector<std::string>& names = root.context().list_names[std::string(names_of_joints)];
   names.emplace_back("joints");
   for (const JointSetSpec& spec : scenario.joint_sets) names.push_back(spec.set.name);
   for (const TraceMapSpec& spec : scenario.trace_maps) names.push_back(spec.name);
+  if (scenario.rock_bridge) names.push_back(scenario.rock_bridge->name);
 }
 
 }  // namespace keyblock::scenario

@@ -67,6 +67,8 @@ void read_domain(TableReader& t, Scenario& scenario) {
             .usual = &usual::friction});
 }
 
+constexpr Word<bool> dead_ends[] = {{"remove", false}, {"bridge", true}};
+
 void read_cutting(TableReader& t, CuttingKeys& cutting) {
   t.number("snapping", cutting.snapping,
            {.meaning = "A trace that ends closer than this to another line is made to end on it.",
@@ -97,6 +99,10 @@ void read_cutting(TableReader& t, CuttingKeys& cutting) {
             .unit = "m",
             .at_least = 0.0,
             .fallback = "5e-8 L"});
+  t.word(
+      "dead_ends", cutting.bridges_dead_ends, dead_ends,
+      {.meaning = "What becomes of a joint that ends in rock: `remove`, as it bounds no block, or `bridge`: "
+                  "it goes straight on to the next line as a joint with the strength of [rock_bridge]."});
 }
 
 void read_region(TableReader& t, RegionSpec& region) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/index.h"
+#include "scenario/own_joints.h"
 #include "scenario/polygon_checks.h"
 #include "scenario/sections.h"
 
@@ -129,10 +130,9 @@ void read_strength(TableReader& t, Stage& stage) {
 
 /// From which stage on slip uses the strength of joints up.
 void read_wear(TableReader& t, Stage& stage, const Scenario& scenario) {
-  const auto weakens = [](const auto& spec) { return spec.joints.has_residual(); };
-  const bool some = t.documenting() || scenario.joints.has_residual() ||
-                    std::ranges::any_of(scenario.joint_sets, weakens) ||
-                    std::ranges::any_of(scenario.trace_maps, weakens);
+  const auto weakens = [](const OwnJoints& joints) { return joints.keys.has_residual(); };
+  const bool some =
+      t.documenting() || scenario.joints.has_residual() || std::ranges::any_of(own_joints(scenario), weakens);
   bool wears = true;
   const bool is_given = t.boolean(
       "wears_joints", wears,

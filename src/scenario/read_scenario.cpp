@@ -7,6 +7,7 @@
 #include "rockmass/trace_generator.h"
 #include "scenario/excavated_blocks.h"
 #include "scenario/key_path.h"
+#include "scenario/own_joints.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -24,6 +25,7 @@ class Consistency {
     const Value* section = root_.find("section");
     if (section == nullptr || section->find("azimuth") == nullptr) check_without_azimuth();
     check_trace_counts();
+    check_bridges();
     check_motion_places();
     check_weights();
     check_excavations();
@@ -83,6 +85,25 @@ class Consistency {
            fmt::format("about {:.2g} traces in the domain", count),
            fmt::format("at most {:.0e}; spacing, length or gap are too small for this domain",
                        rockmass::max_traces));
+    }
+  }
+
+  // Rock bridges have a strength, and a name that is theirs.
+  void check_bridges() {
+    const std::string expected = "[rock_bridge], with the strength of the rock that joints go on through";
+    if (scenario_.rock_bridge) {
+      for (const OwnJoints& joints : own_joints(scenario_)) {
+        if (joints.name == scenario_.rock_bridge->name && joints.path != scenario_.rock_bridge->path)
+          fail(joints.path, join_path(joints.path, "name"), "'rock_bridge', as [rock_bridge] is called",
+               "a name of its own");
+      }
+      return;
+    }
+    if (scenario_.cutting.bridges_dead_ends)
+      fail("cutting.dead_ends", "cutting.dead_ends", "\"bridge\" without [rock_bridge]", expected);
+    for (const JointSetSpec& spec : scenario_.joint_sets) {
+      const std::string key = join_path(spec.path, "gap_bonds");
+      if (spec.gap_bonds) fail(key, key, "gap_bonds without [rock_bridge]", expected);
     }
   }
 
@@ -251,6 +272,7 @@ void read_scenario(TableReader& root, Scenario& scenario) {
   read_gravity(root, scenario);
   read_rock_mass(root, scenario);
   read_shapes(root, scenario);
+  read_interfaces(root, scenario);
   read_boundary(root, scenario);
   read_loading(root, scenario);
   read_run(root, scenario);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "scenario/key_path.h"
+#include "scenario/own_joints.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -11,19 +12,11 @@ namespace {
 
 constexpr KeyKind name_list[] = {KeyKind::references};
 
-/// Names of the joint sets, then of the trace maps.
-std::vector<std::string> joint_names(const Scenario& scenario) {
-  std::vector<std::string> names;
-  for (const JointSetSpec& spec : scenario.joint_sets) names.push_back(spec.set.name);
-  for (const TraceMapSpec& spec : scenario.trace_maps) names.push_back(spec.name);
-  return names;
-}
-
 void read_sets(TableReader& t, WaterSpec& water, const Scenario& scenario) {
-  constexpr std::string_view type = "array of names of [[joint_set]] and [[trace_map]]";
+  constexpr std::string_view type = "array of names of [[joint_set]], [[interface]] and [[trace_map]]";
   const Value* list =
       t.any("sets", type,
-            {.meaning = "The joint sets and trace maps that hold this water; the others are dry. "
+            {.meaning = "The joint sets, interfaces and trace maps that hold this water; the others are dry. "
                         "Outside faces hold it always.",
              .fallback = "all but those with dry = true",
              .kinds = name_list});
@@ -33,7 +26,7 @@ void read_sets(TableReader& t, WaterSpec& water, const Scenario& scenario) {
            list->is(Value::Type::string) ? "write [" + to_toml(*list) + "]" : "");
     return;
   }
-  const std::vector<std::string> names = joint_names(scenario);
+  const std::vector<std::string> names = names_of(own_joints(scenario));
   water.sets.emplace(names.size(), false);
   for (std::size_t k = 0; k < list->items.size(); ++k) {
     const Value& item = list->items[k];
@@ -43,8 +36,9 @@ void read_sets(TableReader& t, WaterSpec& water, const Scenario& scenario) {
       continue;
     }
     t.fail_at(item, join_index(join_path(t.path(), "sets"), k), describe(item),
-              names.empty() ? "the name of a [[joint_set]] or [[trace_map]] (there is none)"
-                            : "the name of a [[joint_set]] or [[trace_map]]: " + list_words(names),
+              names.empty()
+                  ? "the name of a [[joint_set]], [[interface]] or [[trace_map]] (there is none)"
+                  : "the name of a [[joint_set]], [[interface]] or [[trace_map]]: " + list_words(names),
               item.is(Value::Type::string) ? suggestion(item.text, names) : "");
   }
 }

@@ -33,12 +33,12 @@ struct RockKeys {
 
 constexpr int automatic_order = 0;
 
-/// [joints], or those of its keys that a joint set or trace map has of its own.
+/// [joints], or those of its keys that a joint set, trace map or interface has of its own.
 struct JointKeys {
   std::optional<double> friction, cohesion, tension, normal_stiffness, shear_stiffness;
   std::optional<double> residual_friction, residual_cohesion, weakening_slip;
   std::optional<double> strength_factor;  ///< tan(friction), cohesion and tension are divided by it
-  bool dry = false;                       ///< of a set or trace map: it holds no water
+  bool dry = false;                       ///< of joints of their own: they hold no water
 
   /// Whether strength falls from a peak to what is left.
   [[nodiscard]] bool has_residual() const { return residual_friction || residual_cohesion || weakening_slip; }
@@ -55,10 +55,12 @@ struct Domain {
 /// Tolerances of cutting; those not given scale with the domain (cutting::CutTolerances).
 struct CuttingKeys {
   std::optional<double> snapping, sliver_area, sliver_thickness, cluster, collinear;
+  bool bridges_dead_ends = false;  ///< what ends in rock goes on as a rock bridge; else it is removed
 };
 
 struct JointSetSpec {
   rockmass::JointSet set;
+  bool gap_bonds = false;  ///< its gaps are rock bridges
   JointKeys joints;
   std::string path;  ///< key path, here and below; position: Scenario::where
 };
@@ -67,6 +69,20 @@ struct TraceMapSpec {
   std::string name;
   std::filesystem::path file;            ///< empty: lines
   std::vector<std::vector<Vec2>> lines;  ///< one trace each
+  JointKeys joints;
+  std::string path;
+};
+
+/// [rock_bridge]
+struct RockBridgeSpec {
+  std::string name = "rock_bridge", path = "rock_bridge";
+  JointKeys joints;
+};
+
+/// [[interface]]
+struct InterfaceSpec {
+  std::string name;
+  std::pair<std::string, std::string> between;  ///< names of blocks, ascending
   JointKeys joints;
   std::string path;
 };
@@ -116,7 +132,7 @@ struct WaterSpec {
   std::string name;                       ///< may be empty, of one that is alone
   std::vector<Vec2> table;                ///< m, from left to right
   double density = 1000.0;                ///< kg/m³
-  std::optional<std::vector<bool>> sets;  ///< of all joint sets, then of all trace maps: they hold it
+  std::optional<std::vector<bool>> sets;  ///< of all own_joints(): they hold it
   std::string path;
 };
 
@@ -223,6 +239,8 @@ struct Scenario {
   double load_factor = 1.0;  ///< of all loads
   std::vector<JointSetSpec> joint_sets;
   std::vector<TraceMapSpec> trace_maps;
+  std::optional<RockBridgeSpec> rock_bridge;
+  std::vector<InterfaceSpec> interfaces;
   CuttingKeys cutting;
   std::vector<RegionSpec> regions;
   std::vector<ExcavationSpec> excavations;

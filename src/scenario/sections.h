@@ -23,6 +23,10 @@ void read_scenario(TableReader& root, Scenario& scenario);
 void read_rock_mass(TableReader& root, Scenario& scenario);
 /// [joints], [[joint_set]], [[trace_map]].
 void read_joints(TableReader& root, Scenario& scenario);
+/// Strength and stiffness of joints of their own, which have those of [joints] else.
+void read_joint_keys_of(TableReader& t, JointKeys& joints, const JointKeys& standard);
+/// [[interface]], after [[block]] and all other joints.
+void read_interfaces(TableReader& root, Scenario& scenario);
 /// What is built into it: [[excavation]], [[block]].
 void read_shapes(TableReader& root, Scenario& scenario);
 /// [boundary], after [domain], [rock] and what is built into them.

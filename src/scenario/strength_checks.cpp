@@ -7,10 +7,12 @@
 #include <optional>
 #include <utility>
 
+#include "scenario/own_joints.h"
+
 namespace keyblock::scenario {
 namespace {
 
-/// The strength of [joints], of a set or of a trace map: what it gives itself, and what it has with that of [joints].
+/// The strength of [joints], or of joints of their own: what it gives itself, and what it has with that of [joints].
 class Strength {
  public:
   Strength(const std::string& path, const JointKeys& own, const JointKeys& standard,
@@ -88,10 +90,8 @@ void add_strength_warnings(const Scenario& scenario, std::vector<std::string>& w
   const auto for_all = [&](void (Strength::*check)()) {
     static const std::string joints = "joints";
     (Strength(joints, scenario.joints, nothing, warnings).*check)();
-    for (const JointSetSpec& spec : scenario.joint_sets)
-      (Strength(spec.path, spec.joints, scenario.joints, warnings).*check)();
-    for (const TraceMapSpec& spec : scenario.trace_maps)
-      (Strength(spec.path, spec.joints, scenario.joints, warnings).*check)();
+    for (const OwnJoints& own : own_joints(scenario))
+      (Strength(own.path, own.keys, scenario.joints, warnings).*check)();
   };
   for (const auto check : {&Strength::check_bond, &Strength::check_residual, &Strength::check_factor})
     for_all(check);

@@ -46,7 +46,7 @@ struct Word {
   E value;
 };
 
-/// Not the key of a list: names of joint sets and trace maps, after `joints`, which stands for all joints that are of none.
+/// Not the key of a list: names of joint sets, trace maps and interfaces, after `joints`, which stands for all joints that are of none.
 inline constexpr std::string_view names_of_joints = "joints";
 
 /// What is gathered while a document is read.

@@ -11,11 +11,13 @@ namespace {
 
 /// What a name of a list is the name of.
 std::string element_of(std::string_view list) {
-  return list == names_of_joints ? "a joint set or trace map, or \"joints\"" : fmt::format("a [[{}]]", list);
+  return list == names_of_joints ? "a joint set, trace map or interface, or \"joints\""
+                                 : fmt::format("a [[{}]]", list);
 }
 
 std::string elements_of(std::string_view list) {
-  return list == names_of_joints ? "joint sets and trace maps, or \"joints\"" : fmt::format("[[{}]]", list);
+  return list == names_of_joints ? "joint sets, trace maps and interfaces, or \"joints\""
+                                 : fmt::format("[[{}]]", list);
 }
 
 constexpr std::string_view point_text = "two numbers [x, y]";

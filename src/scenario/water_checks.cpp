@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scenario/magnitudes.h"
+#include "scenario/own_joints.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -16,11 +17,10 @@ constexpr double most_head = 2000.0;
 /// Of a water table against the normal of gravity, that rounding leaves.
 constexpr double least_slope = 1e-6;
 
-/// Of all joint sets, then of all trace maps: they hold no water, whichever there is.
+/// Of all joints of their own: they hold no water, whichever there is.
 std::vector<bool> dry_by_themselves(const Scenario& scenario) {
   std::vector<bool> is_dry;
-  for (const JointSetSpec& spec : scenario.joint_sets) is_dry.push_back(spec.joints.dry);
-  for (const TraceMapSpec& spec : scenario.trace_maps) is_dry.push_back(spec.joints.dry);
+  for (const OwnJoints& joints : own_joints(scenario)) is_dry.push_back(joints.keys.dry);
   return is_dry;
 }
 
@@ -37,8 +37,7 @@ class WaterChecks {
     }
     check_gravity();
     for (const ExcavationSpec& spec : scenario_.excavations) check_drainage(spec);
-    for (const JointSetSpec& spec : scenario_.joint_sets) check_dry(spec.path, spec.joints);
-    for (const TraceMapSpec& spec : scenario_.trace_maps) check_dry(spec.path, spec.joints);
+    for (const OwnJoints& joints : own_joints(scenario_)) check_dry(joints.path, joints.keys);
   }
 
  private:

@@ -263,6 +263,10 @@ Model build_model(const RunSetup& setup) {
   }
   number_coefficients(model);
   build_surface(model, joints);
+  find_seams(model);
+  for (const cutting::Interface& interface : setup.system.interfaces)
+    model.surface.pair_joints.push_back(
+        {static_cast<int>(interface.low), static_cast<int>(interface.high), law_of_set(interface.joint)});
   add_loads(setup, model);
   add_couplings(setup, model);
   add_prescribed_motions(setup, model);

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <string>
 
+#include "cutting/interfaces.h"
+
 namespace keyblock::simulation {
 namespace {
 
@@ -29,7 +31,13 @@ contact::JointLaw law_of(const contact::JointProperties& joint) {
 
 }  // namespace
 
+int law_of_set(cutting::EdgeLabel label) {
+  return first_set_law + label.index;
+}
+
 int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
+  // An interface is one of two blocks: a third one that touches their edges has nothing of it.
+  if (cutting::is_of_interface(setup.system, label)) return static_cast<int>(of_joints);
   const int sets = static_cast<int>(setup.joints.joint_sets.size());
   const int maps = static_cast<int>(setup.joints.trace_maps.size());
   switch (label.kind) {
@@ -39,7 +47,7 @@ int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
     case cutting::EdgeKind::excavation:
       return static_cast<int>(of_outlines);
     case cutting::EdgeKind::joint_set:
-      return first_set_law + label.index;
+      return law_of_set(label);
     case cutting::EdgeKind::trace_map:
       return first_set_law + sets + std::min<int>(label.index, maps - 1);
   }

@@ -9,16 +9,18 @@
 #include "simulation/control.h"
 #include "simulation/setup.h"
 
-/// Which law a joint has. Their numbers: 0 `joints`, 1 the frame, 2 outlines of excavations before they are opened, then joint sets, then trace
+/// Which law a joint has. Their numbers: 0 `joints`, 1 the frame, 2 outlines of excavations before they are opened, then joint sets, interfaces and trace
 /// maps.
 namespace keyblock::simulation {
 
 /// Number of the law of the first joint set; those of the others follow, then those of trace maps.
 inline constexpr int first_set_law = 3;
 
+/// Number of the law of a joint set or an interface.
+int law_of_set(cutting::EdgeLabel label);
 /// Number of the law of an edge (Surface::joint).
 int joint_law(const RunSetup& setup, cutting::EdgeLabel label);
-/// Number of the law of a joint set, a trace map, `joints` or `frame`; none: there is no such name.
+/// Number of the law of a joint set, an interface, a trace map, `joints` or `frame`; none: there is no such name.
 std::optional<std::size_t> find_law(const RunSetup& setup, std::string_view name);
 
 /// All laws, as the setup has them.

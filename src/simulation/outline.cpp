@@ -239,6 +239,22 @@ void build_surface(Model& model, std::span<const int> joint) {
   evaluate_basis(model);
 }
 
+void find_seams(Model& model) {
+  constexpr double straight = 1e-6;  // sine of the angle between the two edges
+  contact::Surface& surface = model.surface;
+  std::vector<std::uint8_t> seams(surface.block.size(), 0);
+  for (std::size_t v = 0; v < seams.size(); ++v) {
+    const std::size_t before = at(surface.previous[v]);
+    const contact::JointLaw &one = model.laws[at(surface.joint[before])],
+                            &other = model.laws[at(surface.joint[v])];
+    if (one == other || one.fused || other.fused) continue;
+    const Vec2 in = normalized(surface.position[v] - surface.position[before]),
+               out = normalized(surface.position[at(surface.next[v])] - surface.position[v]);
+    if (dot(in, out) > 0.0 && std::abs(cross(in, out)) <= straight) seams[v] = 1;
+  }
+  if (std::ranges::find(seams, 1) != seams.end()) surface.is_seam = std::move(seams);
+}
+
 void evaluate_basis(Model& model) {
   contact::Surface& surface = model.surface;
   surface.phi.clear();

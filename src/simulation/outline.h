@@ -17,6 +17,9 @@ void build_surface(dynamics::Model& model, std::span<const int> joint);
 /// Basis functions at the vertices of the surface, after blocks have got others.
 void evaluate_basis(dynamics::Model& model);
 
+/// Surface::is_seam: where the laws of both edges differ, that of an outline not yet opened aside.
+void find_seams(dynamics::Model& model);
+
 /// Number of pieces into which contact divides an edge of a block, so that its curvature is followed.
 int edge_pieces(double edge_length, double block_area, int order);
 

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/index.h"
 #include "coupling/facets.h"
+#include "cutting/interfaces.h"
 #include "overlap/overlap.h"
 #include "simulation/base.h"
 #include "simulation/build_boundary.h"
@@ -82,7 +83,8 @@ void put_strengths(const dynamics::Model& model, std::span<const contact::Contac
     to[k].friction = c.friction_coefficient;
     to[k].cohesion = c.length > 0.0 ? c.cohesion / c.length : 0.0;
     to[k].tension = c.length > 0.0 ? c.tension / c.length : 0.0;
-    to[k].strength_left = strength_left(model.laws[at(model.surface.joint[at(c.edge)])], c.memory);
+    to[k].strength_left =
+        strength_left(model.laws[at(model.surface.joint_of(c.edge, c.block_a, c.block_b))], c.memory);
   }
 }
 
@@ -269,7 +271,8 @@ void Recorder::put_places(std::span<const contact::Contact> contacts,
     row.position = model_.surface.position[at(c.vertex)];
     row.normal = c.normal;
     row.length = c.length;
-    row.label = labels_[at(c.edge)];
+    row.label =
+        cutting::joint_between(setup_.system, at(c.block_a), at(c.block_b)).value_or(labels_[at(c.edge)]);
   }
 }
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cutting/interfaces.h"
+#include "geometry/facing.h"
+
 namespace keyblock::simulation {
 
 namespace {
 
 constexpr double touching = 1e-3;  // of the block size, that facing edges are apart at most
-constexpr double parallel = 1e-2;  // sine of the angle between them
 
 struct Edge {
   std::size_t block;
@@ -41,18 +43,11 @@ std::vector<Edge> edges_of(const cutting::BlockSystem& system) {
 }
 
 /// Where two edges face each other.
-std::optional<JointPiece> common(const Edge& a, const Edge& b, double tolerance) {
-  const double length = norm(a.to - a.from), other = norm(b.to - b.from);
-  if (!(length > tolerance) || !(other > tolerance)) return std::nullopt;
-  const Vec2 along = (a.to - a.from) / length, back = (b.to - b.from) / other;
-  if (dot(along, back) > 0.0 || std::abs(cross(along, back)) > parallel) return std::nullopt;
-  if (std::abs(cross(along, b.from - a.from)) > tolerance ||
-      std::abs(cross(along, b.to - a.from)) > tolerance)
-    return std::nullopt;
-  const double from = std::max(0.0, dot(b.to - a.from, along)),
-               to = std::min(length, dot(b.from - a.from, along));
-  if (!(to - from > tolerance)) return std::nullopt;
-  return JointPiece{a.block, b.block, a.from + from * along, a.from + to * along,
+std::optional<JointPiece> piece_of(const Edge& a, const Edge& b, double tolerance) {
+  const auto common = facing_stretch(a.from, a.to, b.from, b.to, tolerance);
+  if (!common) return std::nullopt;
+  const Vec2 along = (a.to - a.from) / norm(a.to - a.from);
+  return JointPiece{a.block, b.block, a.from + common->from * along, a.from + common->to * along,
                     is_joint(a.label) ? a.label : b.label};
 }
 
@@ -108,9 +103,7 @@ double length_inside(Vec2 from, Vec2 to, const Box& part, double tolerance) {
 }  // namespace
 
 double mean_block_size(const RunSetup& setup) {
-  double sum = 0.0;
-  for (const cutting::CutBlock& block : setup.system.blocks) sum += keyblock::area(block.polygon);
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(setup.system.blocks.size(), 1)));
+  return cutting::mean_block_size(setup.system);
 }
 
 std::vector<JointPiece> joint_pieces(const RunSetup& setup) {
@@ -123,7 +116,10 @@ std::vector<JointPiece> joint_pieces(const RunSetup& setup) {
     std::erase_if(reached, [&](std::size_t i) { return edges[i].right() < edge.left() - tolerance; });
     for (const std::size_t i : reached) {
       if (edges[i].block == edge.block) continue;
-      if (const auto piece = common(edge, edges[i], tolerance)) pieces.push_back(*piece);
+      auto piece = piece_of(edge, edges[i], tolerance);
+      if (!piece) continue;
+      piece->label = cutting::joint_between(setup.system, piece->a, piece->b).value_or(piece->label);
+      pieces.push_back(*piece);
     }
     reached.push_back(k);
   }

@@ -33,7 +33,7 @@ struct BlockProperties {
 struct JointTable {
   contact::JointProperties
       standard;  ///< [joints]: explicit blocks, excavation outlines, and new contacts between them
-  std::vector<contact::JointProperties> joint_sets;
+  std::vector<contact::JointProperties> joint_sets;  ///< then of rock bridges, if there are any, and of interfaces
   std::vector<contact::JointProperties> trace_maps;
   contact::JointProperties frame;  ///< between the rock and the frame; frictionless unless given
 };
@@ -62,7 +62,7 @@ struct Water {
   std::string name;  ///< may be empty, of one that is alone
   loading::WaterTable table;
   double density = 1000.0;       ///< kg/m³
-  std::vector<bool> dry_joints;  ///< of the joint sets, then of the trace maps: they hold none of it
+  std::vector<bool> dry_joints;  ///< by joint law, from first_set_law on: they hold none of it
 };
 
 /// Follows a point of a block, rock far away, or what an element carries.
@@ -129,7 +129,8 @@ struct RunSetup {
   Box domain;                        ///< if there is one
   std::optional<Boundary> boundary;  ///< the rock around the model; none: a frame, or nothing
   JointTable joints;
-  std::vector<std::string> joint_set_names, trace_map_names;
+  std::vector<std::string> joint_set_names;  ///< then those of rock bridges and interfaces
+  std::vector<std::string> trace_map_names;
   std::vector<Excavation> excavations;
 
   Vec2 gravity{0.0, -9.81};  ///< m/s²

@@ -23,6 +23,8 @@ void change_friction(scenario::Scenario& scenario, double by) {
   change(scenario.joints.friction);
   for (auto& set : scenario.joint_sets) change(set.joints.friction);
   for (auto& map : scenario.trace_maps) change(map.joints.friction);
+  if (scenario.rock_bridge) change(scenario.rock_bridge->joints.friction);
+  for (auto& interface : scenario.interfaces) change(interface.joints.friction);
 }
 
 // The settling stages that an immediate release leaves out: [first, last).

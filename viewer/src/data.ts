@@ -154,6 +154,8 @@ export interface Header {
       highest_tooth_m: number;
       /** Blocks that only the tolerances that were given keep from being merged. */
       slivers_left: number;
+      /** Of rock bridges that bound blocks. */
+      bridge_length_m: number;
     };
   };
   area: { blocks_m2: number; excavated_m2: number };

@@ -225,6 +225,9 @@ export function cuttingFacts(run: Run): HTMLElement | null {
       "Dead ends and idle joints removed",
       `${count(c.removed_pieces, "piece")}, ${significant(c.removed_length_m, 4)} m${share}`,
     ],
+    ...(c.bridge_length_m > 0
+      ? ([["Rock bridges that bound blocks", `${significant(c.bridge_length_m, 4)} m`]] as [string, string][])
+      : []),
     [
       "Slivers merged into neighbours",
       `${integer(c.merged_slivers)}, ${significant(c.sliver_area_m2, 3)} m² in all${across}`,

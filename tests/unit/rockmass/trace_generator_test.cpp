@@ -132,6 +132,24 @@ TEST(TraceGenerator, AGrownWindowKeepsItsTraces) {
   }
 }
 
+// Together with them the traces fill their lines, turned or not.
+TEST(TraceGenerator, GapsBeginAndEndAtTraces) {
+  JointSet set = plain;
+  for (const double scatter : {0.0, 8.0}) {
+    set.dip_std = scatter;
+    const std::vector<Trace> traces = generate_traces(set, 1, azimuth, window.grown(30.0), 5, 3),
+                             gaps = gaps_of_traces(set, 1, azimuth, window, 5, 3);
+    EXPECT_GT(gaps.size(), 20U);
+    for (const Trace& gap : gaps) {
+      const auto is_at = [&](Vec2 p, Vec2 Trace::*end) {
+        return std::ranges::any_of(traces, [&](const Trace& trace) { return trace.*end == p; });
+      };
+      EXPECT_TRUE(is_at(gap.a, &Trace::b));
+      EXPECT_TRUE(is_at(gap.b, &Trace::a));
+    }
+  }
+}
+
 TEST(TraceGenerator, RealizationsAndSetsDiffer) {
   const auto first = [](std::uint64_t seed, int realization, int set) {
     return generate_traces(plain, set, azimuth, window, seed, realization).front().a;

@@ -55,13 +55,15 @@ TEST(KeyHints, OfWordsOfOtherPrograms) {
 }
 
 TEST(KeyHints, OfKeysThatBelongElsewhere) {
-  expect_hints({{"rock.kn=1", "'normal_stiffness' belongs to [joints], [[joint_set]], [[trace_map]]"},
-                {"rock.dt=1", "'step' belongs to [time]"},
-                {"E=1", "'young' belongs to [rock], [[region]], [[block]]"},
-                {"rock.units=1", "'units' belongs to the top of the file"},
-                {"K0=1", "'k0' belongs to [in_situ]"},
-                {"rock.fault=1", "[[trace_map]] is the table for that"},
-                {"joints.dipp=1", "'dip' belongs to [[joint_set]]"}});
+  expect_hints(
+      {{"rock.kn=1",
+        "'normal_stiffness' belongs to [joints], [[joint_set]], [[trace_map]], [rock_bridge], [[interface]]"},
+       {"rock.dt=1", "'step' belongs to [time]"},
+       {"E=1", "'young' belongs to [rock], [[region]], [[block]]"},
+       {"rock.units=1", "'units' belongs to the top of the file"},
+       {"K0=1", "'k0' belongs to [in_situ]"},
+       {"rock.fault=1", "[[trace_map]] is the table for that"},
+       {"joints.dipp=1", "'dip' belongs to [[joint_set]]"}});
 }
 
 TEST(KeyHints, OfWhatTheProgramHasNot) {
