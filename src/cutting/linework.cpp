@@ -219,9 +219,10 @@ void snap_outline(Ring& outline, const Ring& domain, double reach) {
   }
 }
 
-EdgeLabel label_of(rockmass::TraceSource source) {
-  const bool statistical = source.kind == rockmass::TraceSource::Kind::joint_set;
-  return {statistical ? EdgeKind::joint_set : EdgeKind::trace_map, static_cast<std::int16_t>(source.index)};
+EdgeLabel label_of(const rockmass::Trace& trace) {
+  const bool statistical = trace.source.kind == rockmass::TraceSource::Kind::joint_set;
+  return {statistical ? EdgeKind::joint_set : EdgeKind::trace_map,
+          static_cast<std::int16_t>(trace.source.index), trace.number};
 }
 
 // Real coordinates have steps of their own, the larger the farther they are from 0. Where vertices may stay within such steps of each
@@ -273,8 +274,7 @@ Linework make_linework(const CutInput& input, const CutTolerances& tolerances) {
     Vec2 a = input.traces[k].a, b = input.traces[k].b;
     if (!clip(window, a, b)) continue;
     const GridPoint from = work.to_grid(a), to = work.to_grid(b);
-    if (!(from == to))
-      work.lines.push_back({from, to, label_of(input.traces[k].source), static_cast<int>(k)});
+    if (!(from == to)) work.lines.push_back({from, to, label_of(input.traces[k]), static_cast<int>(k)});
   }
   EndSnapper(work.lines, bounds({work.domain, {}}), std::max(snapping / work.grid, rounding_reach)).run();
   std::erase_if(work.lines, [](const SourceLine& line) { return line.a == line.b && line.nodes.empty(); });

@@ -145,6 +145,11 @@ class Generator {
   }
 
  private:
+  /// Of a trace: line and interval, by the numbers of their draws.
+  struct Place {
+    std::uint32_t line, interval;
+  };
+
   [[nodiscard]] RandomStream line_stream(std::uint32_t number) const {
     return {seed_, realization_, static_cast<std::uint32_t>(source_.index), number};
   }
@@ -156,7 +161,9 @@ class Generator {
       return length(i) + quantile(set_.gap, draw(stream, i, Draw::gap));
     };
     const Start start = stationary_start(stream, cycle);
-    const auto add = [&](std::uint32_t i, double begin) { add_trace(stream, i, position, begin, length(i)); };
+    const auto add = [&](std::uint32_t i, double begin) {
+      add_trace(stream, {1u + folded(number), i}, position, begin, length(i));
+    };
     add(start.interval, -start.offset);
     double begin = cycle(start.interval) - start.offset;
     for (int k = 1; begin <= half_along_; begin += cycle(folded(k++))) add(folded(k), begin);
@@ -167,21 +174,22 @@ class Generator {
     }
   }
 
-  void add_trace(const RandomStream& stream, std::uint32_t interval, double position, double begin,
-                 double length) {
+  void add_trace(const RandomStream& stream, Place place, double position, double begin, double length) {
     const Vec2 middle = centre_ + position * perpendicular(along_) + (begin + 0.5 * length) * along_;
     Vec2 direction = along_;
     if (scattered_) {
-      const double dip = set_.dip + set_.dip_std * inverse_normal_cdf(draw(stream, interval, Draw::dip));
+      const double dip =
+          set_.dip + set_.dip_std * inverse_normal_cdf(draw(stream, place.interval, Draw::dip));
       const double dip_direction =
           set_.dip_direction +
-          set_.dip_direction_std * inverse_normal_cdf(draw(stream, interval, Draw::dip_direction));
+          set_.dip_direction_std * inverse_normal_cdf(draw(stream, place.interval, Draw::dip_direction));
       direction = direction_of(apparent_dip(dip, dip_direction, azimuth_));
     }
     const Vec2 a = on_grid(middle - 0.5 * length * direction);
     const Vec2 b = on_grid(middle + 0.5 * length * direction);
     if (++drawn_ > max_traces) refuse(set_, fmt::format("more than {:.0g}", max_traces));
-    if (!(a == b) && meets(window_, a, b)) traces_.push_back({a, b, source_});
+    if (!(a == b) && meets(window_, a, b))
+      traces_.push_back({a, b, source_, static_cast<int>(traces_.size()), place.line, place.interval});
   }
 
   static Vec2 on_grid(Vec2 p) {

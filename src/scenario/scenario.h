@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -15,6 +16,7 @@
 #include "model/options.h"
 #include "record/stage.h"
 #include "rockmass/joint_set.h"
+#include "rockmass/random_strength.h"
 #include "scenario/study_spec.h"
 #include "scenario/usual.h"
 #include "simulation/boundary.h"
@@ -39,10 +41,19 @@ struct JointKeys {
   std::optional<double> residual_friction, residual_cohesion, weakening_slip;
   std::optional<double> strength_factor;  ///< tan(friction), cohesion and tension are divided by it
   bool dry = false;                       ///< of a set or trace map: it holds no water
+  /// Of a set or trace map, by StrengthKey: strengths that are drawn. friction, cohesion … have their means.
+  std::array<std::optional<rockmass::RandomStrength>, rockmass::strength_count> random{};
+  double change_of_mapped_friction =
+      0.0;  ///< °, in a variant of a study, of traces whose map has their friction
 
   /// Whether strength falls from a peak to what is left.
   [[nodiscard]] bool has_residual() const { return residual_friction || residual_cohesion || weakening_slip; }
 };
+
+/// By StrengthKey.
+inline constexpr std::array<std::optional<double> JointKeys::*, rockmass::strength_count> strength_members{
+    &JointKeys::friction, &JointKeys::cohesion, &JointKeys::tension, &JointKeys::residual_friction,
+    &JointKeys::residual_cohesion};
 
 struct Domain {
   std::pair<double, double> x, y;
@@ -212,6 +223,7 @@ struct Scenario {
   bool si_units = true;  ///< values may be compared with what is usual
   AcceptedWarnings accepted;
   std::uint64_t seed = 1;
+  int strata = 0;  ///< rockmass::Sampling: realizations of a Latin hypercube; 0: they are independent
   Vec2 gravity{0.0, -9.81};  ///< m/s², turned by the tilt of the model
   double tilt = 0.0;         ///< degrees
   std::optional<double> section_azimuth;

@@ -50,9 +50,8 @@ std::vector<std::uint8_t> dry_edges(const RunSetup& setup, const Model& model, c
   const CutSides cut(setup);
   std::vector<std::uint8_t> dry;
   for (std::size_t v = 0; v < model.reference.size(); ++v) {
-    const int law = model.surface.joint[v];
-    const bool is_dry = law >= first_set_law
-                            ? water.dry_joints[at(law - first_set_law)]
+    const std::optional<std::size_t> set = set_of_law(setup, at(model.surface.joint[v]));
+    const bool is_dry = set ? water.dry_joints[*set]
                             : cut.has(model.reference[v], model.reference[at(model.surface.next[v])]);
     dry.push_back(is_dry ? 1 : 0);
   }

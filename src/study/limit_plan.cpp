@@ -8,6 +8,7 @@
 #include "record/damage_fields.h"
 #include "scenario/build.h"
 #include "scenario/inputs.h"
+#include "scenario/joint_table.h"
 #include "scenario/key_path.h"
 #include "scenario/parse.h"
 #include "study/limit_search.h"
@@ -142,7 +143,7 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
   request.finds_moving =
       !request.criterion.by_standing && std::string_view(limit_default(read).criterion) != "fallen";
   if (request.scan == 0) request.scan = scan_of(request.key);
-  if (request.realizations > 1 && read.joint_sets.empty())
+  if (request.realizations > 1 && read.joint_sets.empty() && !scenario::has_random_strengths(read))
     warnings.push_back(
         fmt::format("--realizations {}: nothing is random without a [[joint_set]]; all limits are the same, "
                     "and their interval says nothing",
