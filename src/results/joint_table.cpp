@@ -61,22 +61,6 @@ void read_joints(hid_t file, record::ModelRecord& model) {
   }
 }
 
-ordered_json strengths_json(const std::vector<record::DrawnStrength>& strengths) {
-  ordered_json rows = ordered_json::array();
-  for (const record::DrawnStrength& drawn : strengths)
-    rows.push_back({{"joint", drawn.joint},
-                    {"key", drawn.key},
-                    {"unit", drawn.unit},
-                    {"per", drawn.per},
-                    {"traces", drawn.traces},
-                    {"mean", number_or_null(drawn.mean)},
-                    {"std", number_or_null(drawn.std)},
-                    {"least", number_or_null(drawn.least)},
-                    {"largest", number_or_null(drawn.largest)},
-                    {"above_peak", drawn.capped}});
-  return rows;
-}
-
 std::vector<record::DrawnStrength> read_strengths(const ordered_json& json) {
   std::vector<record::DrawnStrength> strengths;
   for (const ordered_json& row : json) {

@@ -14,9 +14,7 @@ void write_joints(hid_t file, const record::ModelRecord& model);
 /// Files of earlier versions have none. Throws RunError.
 void read_joints(hid_t file, record::ModelRecord& model);
 
-/// Strengths that were drawn.
-nlohmann::ordered_json strengths_json(const std::vector<record::DrawnStrength>& strengths);
-/// Throws nlohmann::json::exception for what is missing or has another type.
+/// Strengths that were drawn (record/strengths_json.h). Throws nlohmann::json::exception for what is missing or has another type.
 std::vector<record::DrawnStrength> read_strengths(const nlohmann::ordered_json& json);
 
 /// joints.csv; empty where there are none.

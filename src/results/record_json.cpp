@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "cutting/cut_fields.h"
 #include "record/run_fields.h"
+#include "record/strengths_json.h"
 #include "results/elements_json.h"
 #include "results/field_json.h"
 #include "results/joint_table.h"
@@ -65,7 +66,7 @@ std::string model_json(const record::ModelRecord& model) {
                     {"closure_is_lower_bound", model.closure_is_lower_bound},
                     {"ground", ground_json(model.ground)},
                     {"hooks", model.hooks}};
-  if (!model.strengths.empty()) json["strengths"] = strengths_json(model.strengths);
+  if (!model.strengths.empty()) json["strengths"] = record::strengths_json<ordered_json>(model.strengths);
   add_element_names(model, json);
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }

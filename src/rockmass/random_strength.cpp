@@ -18,6 +18,12 @@ constexpr std::uint32_t of_maps = 1u << 15;
 /// No realization has this number.
 constexpr std::uint32_t of_permutations = 0xffffffffu;
 
+/// Whose draw a strength has.
+StrengthKey peak_of(StrengthKey key) {
+  if (key == StrengthKey::residual_friction) return StrengthKey::friction;
+  return key == StrengthKey::residual_cohesion ? StrengthKey::cohesion : key;
+}
+
 std::uint32_t stream_word(TraceSource source, StrengthKey key) {
   const std::uint32_t kind = source.kind == TraceSource::Kind::trace_map ? of_maps : 0u;
   return ((static_cast<std::uint32_t>(key) + 1u) << first_strength_bit) | kind |
@@ -122,7 +128,7 @@ double RandomStrength::truncated_mean() const {
 }
 
 double uniform_of(const Sampling& sampling, const Trace& trace, StrengthKey key, DrawnPer per) {
-  const std::uint32_t word = stream_word(trace.source, key);
+  const std::uint32_t word = stream_word(trace.source, peak_of(key));
   const std::uint32_t line = per == DrawnPer::realization ? 0u : trace.line,
                       interval = per == DrawnPer::joint ? trace.interval : of_permutations;
   const auto realization = static_cast<std::uint32_t>(sampling.realization);

@@ -61,7 +61,8 @@ struct Sampling {
 };
 
 /// u in (0, 1) of a strength of a trace. It depends on seed, realization, set or map, strength, and on the trace as `per` says: on its line, its
-/// interval on the line, or on nothing more. So neither geometry nor other strengths move with it.
+/// interval on the line, or on nothing more. So neither geometry nor other strengths move with it. A residual strength has the u of its
+/// peak: the stronger a joint, the more is left, and with the same distribution slip takes nothing.
 ///
 /// With strata, of DrawnPer::realization: u = (π(r) + u')/N, with u' the u without strata, r the realization and π a permutation of 0 … N − 1 that
 /// depends on seed, N, set or map and strength alone.

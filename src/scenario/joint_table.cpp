@@ -267,7 +267,7 @@ std::vector<std::pair<std::string, std::string>> strength_facts(const simulation
       return is_angle ? fmt::format("{:.4g}°", value) : fmt::format("{:.4g} Pa", value);
     };
     std::string value = text(drawn.mean);
-    if (drawn.per != "realization")
+    if (drawn.per != "realization" && drawn.traces > 1)
       value += fmt::format(" on the mean of {} traces, {} to {}", drawn.traces, text(drawn.least),
                            text(drawn.largest));
     facts.emplace_back(

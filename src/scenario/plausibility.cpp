@@ -410,6 +410,11 @@ std::vector<std::string> study_warnings(const Scenario& scenario) {
     warnings.push_back(
         fmt::format("study.realizations = {}: nothing is random without a [[joint_set]]; all are the same",
                     study.realizations));
+  if (study.latin_hypercube && !has_strengths_of_realizations(scenario))
+    warnings.emplace_back(
+        "study.sampling = \"latin_hypercube\": no strength is drawn once in each realization (per = "
+        "\"realization\"), so that "
+        "it changes nothing");
   warn_of_levels(scenario, warnings);
   if (!study.vary.empty()) {
     std::vector<std::string> of_records;  // given where the scenario is read

@@ -42,7 +42,7 @@ constexpr KeyKind number_kinds[] = {KeyKind::number};
 /// What is said of the mean and the standard deviation of a distribution.
 struct ShapeWords {
   std::string_view unit, mean, beyond;
-  const Usual* usual = nullptr;
+  const Usual *usual = nullptr, *usual_std = nullptr;
 };
 
 /// `distribution`, `mean` and `std`.
@@ -71,7 +71,7 @@ void read_shape(TableReader& d, Distribution& distribution, bool zero_allowed, c
                                .required = needs_std && !d.documenting(),
                                .at_least = 0.0,
                                .fallback = "required where used",
-                               .usual = words.usual});
+                               .usual = words.usual_std});
   if (given) check_variation(d, distribution);
 }
 
@@ -104,7 +104,8 @@ void read_distribution(TableReader& t, std::string_view key, Distribution& distr
                {.unit = "m",
                 .mean = "Mean. Zero only where a constant gap is meant.",
                 .beyond = " Beyond that, fewer than 2 joints in 100 make half of the total length.",
-                .usual = &usual::spacing});
+                .usual = &usual::spacing,
+                .usual_std = &usual::spacing});
   });
 }
 

@@ -170,7 +170,9 @@ struct SafetySpec {
   std::string stage;              ///< after which; later ones are left out
   std::vector<std::string> sets;  ///< whose strength it is: sets, maps, `joints`; empty: all
   std::optional<double>
-      strength_factor;  ///< what strength is divided by; none: the run is as without [safety]
+      strength_factor;  ///< what strength is divided by; neither it nor k_h: the run is as without [safety]
+  std::optional<double>
+      k_h;  ///< horizontal seismic coefficient of the last stage; none: that of the stage before
   std::optional<double>
       moved;          ///< m in the stage, beyond which rock has moved; none: a share of the block size
   double area = 0.0;  ///< m², that may move; 0: nothing may

@@ -4,9 +4,15 @@
 import csv
 import json
 import math
+import re
+import shlex
+import signal
+import statistics
+import subprocess
 import unittest
 
-from program import ROOT, Scenario
+from program import PROGRAM, ROOT, Scenario, wait_for
+from study_case import GALLERY
 
 SLOPE = ROOT / "verification/scenarios/limit_slope.toml"  # a block on a plane of 30°
 ALPHA = math.radians(30.0)
@@ -27,6 +33,23 @@ class Random(Scenario):
     def table(self, path):
         with open(self.folder / path, newline="") as file:
             return list(csv.DictReader(file))
+
+
+class Pages(Random):
+    def snippet(self, page, heading, language):
+        text = (ROOT / "docs" / page).read_text().split(heading, 1)[1]
+        return re.search(rf"```{language}\n(.*?)```", text, re.DOTALL)[1]
+
+    def test_what_pages_say_runs(self):
+        gallery = GALLERY.replace("friction = 25.0\n", "", 1)
+        keys = self.snippet("guide/joints.md", "## Random strengths", "toml").split('name = "bedding"\n')[1]
+        self.write("gallery.toml", gallery.replace('name = "flat"\n', 'name = "flat"\n' + keys) + self.snippet("studies.md", "**Latin hypercube.**", "toml"))
+        self.assertRegex(self.keyblock("check", "gallery.toml").stdout, r"friction of “flat”, drawn: 3\d.* on the mean of \d+ traces")
+        self.keyblock("new", "slope")
+        words = shlex.split(self.snippet("slopes.md", "## How likely is failure", "sh"))
+        words[words.index("100")] = "4"
+        self.assertIn("probability of a factor below 1: ", self.keyblock(*words[1:]).stdout)
+        self.assertEqual(len(self.found("out/likely")["realizations"]), 4)
 
 
 class Outputs(Random):
@@ -69,12 +92,92 @@ class Outputs(Random):
         lines = [feature % ("33", "[[20, 11.33333], [50, 28.65384]]"), feature % ("null", "[[50, 28.65384], [50, 40]]")]
         self.write("map.csv", '{"type": "FeatureCollection", "features": [' + ", ".join(lines) + "]}")
         self.keyblock("safety", "slope.toml", "--tolerance", 0.002, "-o", "json")
-        self.assertEqual(self.found("json")["realizations"], self.found()["realizations"])
+        hashes = [[trial["state_hash"] for trial in self.found(out)["realizations"][0]["trials"]] for out in ("out", "json")]
+        self.assertEqual(*hashes)
         for wrong, words in (("95", "a friction angle, at least 0 and below 90°"), ("steep", '"steep"')):
             self.write("map.csv", header + plane.replace(",33,", f",{wrong},"))
             said = self.keyblock("check", "slope.toml", expect=1).stderr
             self.assertIn(words, said)
             self.assertRegex(said, r"map\.csv:2:25: friction")
+
+
+class ManyRealizations(Random):
+    """F = tan φ / tan α + c L / (W sin α) of each draw, of the slope of docs/slopes.md: 1.8364 at 40° and 50 kPa."""
+
+    FRICTION, COHESION = (28.0, 2.5), (12e3, 4e3)
+    SLOPE_OF_COHESION = (1.8364 - math.tan(math.radians(40)) / math.tan(ALPHA)) / 50e3
+
+    def factor(self, strengths):
+        return math.tan(math.radians(strengths["bedding.friction"])) / math.tan(ALPHA) + self.SLOPE_OF_COHESION * strengths["bedding.cohesion"]
+
+    def search(self, count, out, *more, per="joint", tolerance=0.05):
+        cohesion = normal(*self.COHESION, per)
+        sets = self.sets(friction=normal(*self.FRICTION, per), cohesion=cohesion, residual_cohesion=cohesion)
+        return ["safety", SLOPE, *sets, "--from", 0.6, "--to", 1.6, "--tolerance", tolerance, "--realizations", count, "--set", 'study.keep="measures"', "-o", out, *more]
+
+    def parts(self, n=4000):
+        """Quantiles of tan φ / tan α and of the share of cohesion."""
+        deviates = [statistics.NormalDist().inv_cdf((k + 0.5) / n) for k in range(n)]
+        friction = [math.tan(math.radians(self.FRICTION[0] + self.FRICTION[1] * z)) / math.tan(ALPHA) for z in deviates]
+        return friction, [self.SLOPE_OF_COHESION * max(0.0, self.COHESION[0] + self.COHESION[1] * z) for z in deviates]
+
+    def holds(self, estimate, exact):
+        self.assertLessEqual(estimate["low"], exact)
+        self.assertGreaterEqual(estimate["high"], exact)
+
+    def test_the_probability_of_failure_and_what_it_hangs_on(self):
+        """Against exact numbers, after the search was killed and resumed."""
+        process = subprocess.Popen([PROGRAM, *map(str, self.search(100, "out", "--workers", 2))], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        wait_for(lambda: len(list((self.folder / "out").glob("runs/*/run.json"))) > 40, "forty runs")
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        said = self.keyblock(*self.search(100, "out", "--workers", 2, "--resume")).stdout
+        found = self.found()
+        realizations, failure, mean = found["realizations"], found["probability_below_1"], found["mean"]
+        for realization in realizations:
+            factor = self.factor(realization["strengths"])
+            self.assertLess(realization["bracket"]["not_met"], 1.001 * factor)
+            self.assertGreater(realization["bracket"]["met"], 0.999 * factor)
+        friction, cohesion = self.parts()
+        mean_factor = statistics.mean(friction) + statistics.mean(cohesion)
+        below = sum(statistics.NormalDist(statistics.mean(cohesion), statistics.pstdev(cohesion)).cdf(1.0 - f) for f in friction) / len(friction)
+        self.assertEqual(failure["n"], 100)
+        self.holds(failure, below)
+        self.holds(mean, mean_factor)
+        self.assertIn("probability of a factor below 1: ", said)
+        limits = [realization["limit"] for realization in realizations]
+        self.assertAlmostEqual(mean["value"], statistics.mean(limits), places=9)
+        self.assertAlmostEqual(mean["standard_deviation"], statistics.stdev(limits), places=9)
+        reach = 1.98421695 * statistics.stdev(limits) / 10  # t of 99 degrees of freedom
+        self.assertAlmostEqual(mean["high"] - mean["value"], reach, places=6)
+        drawn = [realization["strengths"]["bedding.friction"] for realization in realizations]
+        self.assertAlmostEqual(statistics.mean(drawn), self.FRICTION[0], delta=3 * self.FRICTION[1] / 10)
+        self.assertAlmostEqual(statistics.stdev(drawn), self.FRICTION[1], delta=3 * self.FRICTION[1] / math.sqrt(200))
+        # Of a sum of independent parts each index is its share of the variance.
+        variances = {"bedding.friction": statistics.pvariance(friction), "bedding.cohesion": statistics.pvariance(cohesion)}
+        hangs_on = {one["strength"]: one for one in found["hangs_on"]}
+        self.assertEqual(set(hangs_on), {"bedding.friction", "bedding.cohesion", "bedding.residual_cohesion"})
+        for name, variance in variances.items():
+            self.holds(hangs_on[name]["first_order_index"], variance / sum(variances.values()))
+            self.holds(hangs_on[name]["rank_correlation"], 6 / math.pi * math.asin(0.5 * math.sqrt(variance / sum(variances.values()))))
+        rows = {row["quantity"]: row for row in self.table("out/statistics.csv")}
+        self.assertEqual(float(rows["mean"]["value"]), mean["value"])
+        self.assertEqual(float(rows["probability below 1"]["high"]), failure["high"])
+        self.assertEqual([float(row["bedding.friction"]) for row in self.table("out/limits.csv")], drawn)
+        page = (self.folder / "out/report.html").read_text()
+        for words in ("probability that it is below 1", "What it hangs on", "friction of “bedding”"):
+            self.assertIn(words, page)
+
+    def test_any_number_of_workers_and_a_latin_hypercube(self):
+        hypercube = ("--set", 'study.sampling="latin_hypercube"')
+        for out, workers in (("one", 1), ("two", 2)):
+            self.keyblock(*self.search(10, out, "--workers", workers, *hypercube, per="realization", tolerance=0.4))
+        self.assertEqual((self.folder / "one/limit.json").read_text(), (self.folder / "two/limit.json").read_text())
+        for key, (mean, std) in (("friction", self.FRICTION), ("cohesion", self.COHESION)):
+            share = [statistics.NormalDist(mean, std).cdf(one["strengths"][f"bedding.{key}"]) for one in self.found("one")["realizations"]]
+            self.assertEqual(sorted(int(10 * u) for u in share), list(range(10)))
+        said = self.keyblock("check", SLOPE, *hypercube).stderr
+        self.assertIn("no strength is drawn once in each realization", said)
 
 
 if __name__ == "__main__":

@@ -103,6 +103,9 @@ TEST(UniformOf, DependsOnWhatItIsKeyedByAndOnNothingElse) {
                              joint(trace_at(1, 2), StrengthKey::friction, &seed)};
   EXPECT_EQ(all.size(), 8U);
   EXPECT_EQ(joint(trace_at(1, 2)), joint(trace_at(1, 2)));
+  EXPECT_EQ(joint(trace_at(1, 2), StrengthKey::residual_friction), joint(trace_at(1, 2)));
+  EXPECT_EQ(joint(trace_at(1, 2), StrengthKey::residual_cohesion),
+            joint(trace_at(1, 2), StrengthKey::cohesion));
   const auto drawn = [&](const Trace& trace, DrawnPer per) {
     return uniform_of(sampling, trace, StrengthKey::friction, per);
   };
