@@ -7,20 +7,58 @@
 #include <vector>
 
 #include "commands.h"
+#include "core/error.h"
 #include "core/text.h"
 #include "limit_arguments.h"
+#include "scenario/build.h"
+#include "scenario/parse.h"
+#include "scenario/size_checks.h"
 #include "scenario/value.h"
 
 namespace keyblock::app {
 namespace {
+
+constexpr double largest_coefficient = 10.0;
 
 /// Keys of [safety] that the command line gives.
 struct SafetyArguments {
   LimitArguments limit;
   std::string stage;
   std::vector<std::string> sets;
-  std::optional<double> area, moved;
+  std::optional<double> area, moved, from, to;
+  bool yield = false;
 };
+
+/// Ends of the search: of a factor, or of a seismic coefficient that pushes out of the slope.
+void put_ends(const SafetyArguments& arguments, LimitArguments& limit) {
+  study::LimitRequest& request = limit.request;
+  if (arguments.yield) request.key = study::yield_key;
+  const auto checked = [&](const char* option, const std::optional<double>& value) {
+    CLI::Range range(arguments.yield ? -largest_coefficient : 1e-3,
+                     arguments.yield ? largest_coefficient : 1e3);
+    std::string text = fmt::format("{}", value.value_or(1.0));
+    if (const std::string mistake = range(text); !mistake.empty())
+      throw CLI::ValidationError(option, mistake);
+    return value;
+  };
+  request.from = checked("--from", arguments.from).value_or(arguments.yield ? 0.0 : 0.5);
+  const std::optional<double> to = checked("--to", arguments.to);
+  if (to || !arguments.yield) {
+    request.to = to.value_or(5.0);
+    return;
+  }
+  const scenario::Scenario scenario = scenario::parse_scenario(limit.scenario.file, limit.scenario.overrides);
+  const int side = scenario.stages.empty() ? 0 : scenario::side_of_slope(scenario::build_setup(scenario, 0));
+  if (side == 0) {
+    Diagnostic diagnostic;
+    diagnostic.where.file = "--to";
+    diagnostic.found = "nothing, and ground that does not fall to one side";
+    diagnostic.expected =
+        "a coefficient at which the rock moves: above 0 it pushes to the right, below 0 to the left";
+    throw InputError(std::move(diagnostic));
+  }
+  request.to = side;
+}
 
 std::string quoted(const std::string& text) {
   scenario::Value value;
@@ -32,6 +70,7 @@ std::string quoted(const std::string& text) {
 void run_safety(const SafetyArguments& arguments) {
   LimitArguments limit = arguments.limit;
   std::vector<std::string>& overrides = limit.scenario.overrides;
+  put_ends(arguments, limit);
   if (!arguments.stage.empty()) overrides.push_back("safety.stage=" + quoted(arguments.stage));
   std::string sets;
   for (const std::string& name : arguments.sets) sets += (sets.empty() ? "" : ", ") + quoted(name);
@@ -47,8 +86,6 @@ void add_safety(CLI::App& app) {
   auto arguments = std::make_shared<SafetyArguments>();
   study::LimitRequest& request = arguments->limit.request;
   request.key = study::safety_key;
-  request.from = 0.5;
-  request.to = 5.0;
   request.tolerance = 0.005;
   CLI::App* command = app.add_subcommand("safety",
                                          "Factor of safety: what strength of joints may be divided by, from "
@@ -71,13 +108,18 @@ void add_safety(CLI::App& app) {
       ->add_option("--moved", arguments->moved,
                    "Rock has moved that went farther than this, m; default: 0.2 % of the block size")
       ->type_name("X");
-  command->add_option("--from", request.from, "A factor at which the rock holds")
-      ->check(CLI::Range(1e-3, 1e3).description(""))
-      ->capture_default_str()
+  command->add_flag("--yield", arguments->yield,
+                    "The yield coefficient in the place of the factor: the share of its weight that pushes "
+                    "each block to the side, "
+                    "from the equilibrium on, at which rock moves");
+  command
+      ->add_option("--from", arguments->from,
+                   "A factor at which the rock holds; default: 0.5, of the yield coefficient 0")
       ->type_name("A");
-  command->add_option("--to", request.to, "A factor at which it does not")
-      ->check(CLI::Range(1e-3, 1e3).description(""))
-      ->capture_default_str()
+  command
+      ->add_option("--to", arguments->to,
+                   "A factor at which it does not; default: 5, of the yield coefficient 1 to the side to "
+                   "which the ground falls")
       ->type_name("B");
   command
       ->add_option("--tolerance", request.tolerance,
@@ -103,6 +145,7 @@ void add_safety(CLI::App& app) {
       "the rock holds, from where on it moves, and from where on it falls.\n\n"
       "Examples:\n"
       "  keyblock safety slope.toml -o out/safety\n"
+      "  keyblock safety slope.toml --yield -o out/yield\n"
       "  keyblock safety slope.toml --sets bedding --realizations 40 -o out/bedding\n"
       "  keyblock safety tunnel.toml --stage excavated --area 0.5 --sweep 8 -o out/tunnel");
   command->callback([arguments] { run_safety(*arguments); });

@@ -11,7 +11,7 @@ from .errors import DamagedError
 if TYPE_CHECKING:
     from ._hdf5 import ResultFile
 
-# Sizes by letter: n blocks, v vertices, r starts of rings, m elements. A letter takes the size where it is met first.
+# Sizes by letter: n blocks, v vertices, r starts of rings, m elements, j joints. A letter takes the size where it is met first.
 _MODEL = {
     "model/block_area": "n",
     "model/block_centroid": "n2",
@@ -25,6 +25,7 @@ _MODEL = {
     "model/vertices": "v2",
     "model/edge_index": "v",
     "model/edge_kind": "v",
+    "model/edge_trace": "v",
     "model/ring_start": "r",
     "model/block_rings": "b",
     "frames/time": "t",
@@ -35,6 +36,16 @@ _MODEL = {
     "frames/status": "tn",
     "frames/stress": "tn3",
     "frames/velocity": "tn2",
+    "joints/edge_kind": "j",
+    "joints/edge_index": "j",
+    "joints/trace": "j",
+    "joints/length": "j",
+    "joints/friction": "j",
+    "joints/cohesion": "j",
+    "joints/tension": "j",
+    "joints/residual_friction": "j",
+    "joints/residual_cohesion": "j",
+    "joints/weakening_slip": "j",
     "elements/name": "m",
     "elements/kind": "m",
     "elements/limit": "m",

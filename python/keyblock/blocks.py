@@ -63,6 +63,8 @@ class Blocks(Sequence[Block]):
         self.centroid = file.read("model/block_centroid") + self.origin  #: (nb, 2), m
         self.edge_kind = file.read("model/edge_kind")  #: (nv,), number in EDGE_KINDS
         self.edge_index = file.read("model/edge_index")  #: (nv,), which of that kind
+        #: (nv,), which trace of the joint set or trace map; −1: none, or a result that has not kept it
+        self.edge_trace = file.read("model/edge_trace") if file.has("model/edge_trace") else np.full(len(self.edge_kind), -1)
         self.outlines = self._outlines()
 
     def _outlines(self) -> Rings:
@@ -71,7 +73,7 @@ class Blocks(Sequence[Block]):
         columns = (self.area, self.density, self.fixed, self.order, self.centroid)
         try:
             rings = Rings(self._file.read("model/ring_start"), self._file.read("model/block_rings"), nv)
-            if any(len(column) != n for column in columns) or rings.blocks != n or not len(self.edge_kind) == len(self.edge_index) == nv:
+            if any(len(column) != n for column in columns) or rings.blocks != n or not len(self.edge_kind) == len(self.edge_index) == len(self.edge_trace) == nv:
                 raise ValueError
         except (ValueError, IndexError):
             raise DamagedError(f"{self._file.path} is damaged: the parts of model do not fit each other") from None

@@ -18,6 +18,12 @@ if TYPE_CHECKING:
     from .results import Result
 
 
+def _estimate(found: Any) -> Estimate:
+    """NaN for what is not known."""
+    value, low, high = (math.nan if found.get(name) is None else float(found[name]) for name in ("value", "low", "high"))
+    return Estimate(value, low, high)
+
+
 class Limit:
     """The value of a key at which a criterion begins to hold, for one or more realizations of the rock."""
 
@@ -82,6 +88,30 @@ class Limit:
         `summary["quantiles"]` says which are bounds, as limits beyond an end of the search have a part in them."""
         number = lambda value: math.nan if value is None else float(value)  # noqa: E731
         return {float(q["p"]): Estimate(number(q["value"]), number(q["low"]), number(q["high"])) for q in self.summary.get("quantiles", [])}
+
+    @property
+    def mean(self) -> Estimate:
+        """The mean of the limits over the realizations with Student's interval; its ends are NaN where limits lie beyond an end of the search."""
+        return _estimate(self.summary.get("mean") or {})
+
+    @property
+    def standard_deviation(self) -> float:
+        """Of the limits over the realizations; NaN of one."""
+        found = (self.summary.get("mean") or {}).get("standard_deviation")
+        return math.nan if found is None else float(found)
+
+    @property
+    def probability_below_1(self) -> Estimate:
+        """Of the factor of safety over realizations: the share below 1 with Wilson's interval; NaN of another key."""
+        return _estimate(self.summary.get("probability_below_1") or {})
+
+    @property
+    def hangs_on(self) -> dict[str, dict[str, Estimate]]:
+        """How the limit hangs on each strength that was drawn, by its name: its `rank_correlation` and its `first_order_index`."""
+        return {
+            str(one["strength"]): {name: _estimate(one[name]) for name in ("rank_correlation", "first_order_index")}
+            for one in self.summary.get("hangs_on", [])
+        }
 
     @property
     def realizations(self) -> list[record.Record]:

@@ -110,6 +110,16 @@ class Result:
         """What steps took: iterations, closed contacts, penetration, … over time."""
         return tables.steps(self._file)
 
+    @cached_property
+    def joints(self) -> Any:
+        """Strengths of joints: a row for each joint set and trace map, or for each trace where traces have strengths of their own.
+
+        Columns `joint`, `trace` (−1: the whole set or map) and SI numbers, angles in degrees. NaN of what does not weaken. Rows of a trace are those
+        of edges with `blocks.edge_trace`."""
+        rows = "joints/edge_kind"
+        names = self.blocks.edge_names(self._file.read(rows), self._file.read("joints/edge_index")) if self._file.has(rows) else []
+        return tables.joints(self._file, names)
+
     @property
     def elements(self) -> Any:
         """Springs, supports and other elements: what each carries at the end and carried at the most. None without. At a moment: `frames[3].elements`."""

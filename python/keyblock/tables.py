@@ -12,6 +12,7 @@ from ._hdf5 import ResultFile
 
 HISTORY_COLUMNS = ["ux", "uy", "vx", "vy", "sxx", "syy", "sxy"]  # of results that do not name them
 ELEMENT_COLUMNS = ["force", "elongation"]
+JOINT_COLUMNS = ["length", "friction", "cohesion", "tension", "residual_friction", "residual_cohesion", "weakening_slip"]
 RELEASE_COLUMNS = ["stage", "step", "excavation", "released", "crown", "springline", "mean"]
 
 
@@ -54,6 +55,21 @@ def histories(file: ResultFile) -> Any:
             pandas.MultiIndex.from_arrays([[], []], names=["point", "quantity"])
         )
     return found
+
+
+def joints(file: ResultFile, names: Sequence[str]) -> Any:
+    """A row for each joint set and trace map, or for each trace where traces have strengths of their own; `names` are those of the rows."""
+    columns: dict[str, Any] = {"joint": list(names)}
+    if names:
+        columns["trace"] = file.read("joints/trace")
+        columns |= {name: file.read(f"joints/{name}") for name in JOINT_COLUMNS}
+    if not _optional.has("pandas"):
+        return columns
+    import pandas
+
+    frame = pandas.DataFrame(columns, columns=["joint", "trace", *JOINT_COLUMNS])
+    frame.attrs["units"] = {name: file.unit(f"joints/{name}") for name in JOINT_COLUMNS} if names else {}
+    return frame
 
 
 def energy(file: ResultFile) -> Any:

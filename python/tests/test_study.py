@@ -212,6 +212,8 @@ def test_a_limit(limit, limit_folder, tmp_path):
     assert (limit.unit, limit.limits) == ("°", [limit.value])
     assert limit.answer.startswith("The friction angle that is needed is ") and limit.answer.endswith(" moves.")
     assert np.isnan(limit.interval.low)
+    assert limit.mean.value == limit.value and np.isnan(limit.mean.low) and np.isnan(limit.standard_deviation)
+    assert np.isnan(limit.probability_below_1.value) and limit.hangs_on == {}
     trials = limit.records()
     assert len(trials) == len(limit.realizations[0].trials)
     assert all(trial["met"] == (trial["value"] < limit.value) for trial in trials)

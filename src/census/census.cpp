@@ -84,11 +84,15 @@ class Rock {
 
   [[nodiscard]] FaceStrength strength_of(const Face& face) const {
     if (face.beyond == edge_of_domain) return input_.frame;
-    const auto pick = [&](const std::vector<FaceStrength>& own) {
-      return at(face.label.index) < own.size() ? own[at(face.label.index)] : input_.standard;
+    const auto pick = [&](const std::vector<FaceStrength>& own,
+                          const std::vector<std::vector<FaceStrength>>& traces) {
+      const std::size_t k = at(face.label.index);
+      if (k < traces.size() && face.label.trace >= 0 && at(face.label.trace) < traces[k].size())
+        return traces[k][at(face.label.trace)];
+      return k < own.size() ? own[k] : input_.standard;
     };
-    if (face.label.kind == EdgeKind::joint_set) return pick(input_.joint_sets);
-    if (face.label.kind == EdgeKind::trace_map) return pick(input_.trace_maps);
+    if (face.label.kind == EdgeKind::joint_set) return pick(input_.joint_sets, input_.joint_set_traces);
+    if (face.label.kind == EdgeKind::trace_map) return pick(input_.trace_maps, input_.trace_map_traces);
     return input_.standard;
   }
 

@@ -22,6 +22,8 @@ struct Input {
   std::vector<std::uint8_t> fixed{};   ///< by block: it stays, and is not counted
   FaceStrength standard{};             ///< of faces that are of no set or map
   std::vector<FaceStrength> joint_sets{}, trace_maps{};
+  /// By set or map and trace, where traces have strengths of their own.
+  std::vector<std::vector<FaceStrength>> joint_set_traces{}, trace_map_traces{};
   FaceStrength frame{};  ///< of the edge of the domain
   /// Whether there is rock beyond the edge of the domain: at its top, and at its sides and base.
   bool rock_above = true, rock_around = true;

@@ -19,10 +19,16 @@ enum class EdgeKind : std::uint8_t {
   domain,      ///< the edge of the domain (where the frame is); index 0
 };
 
+/// The set, map or outline, and which trace of it. Labels are equal that are of the same set, map or outline: the trace has no say in the geometry.
 struct EdgeLabel {
   EdgeKind kind = EdgeKind::free;
   std::int16_t index = 0;
-  friend constexpr bool operator==(EdgeLabel, EdgeLabel) = default;
+  /// Number of the trace in its set or map (rockmass::Trace::number); −1: it has none. Where traces overlap, the first. An edge that takes in pieces of
+  /// several traces in line has that of the longest part.
+  std::int32_t trace = -1;
+  friend constexpr bool operator==(EdgeLabel a, EdgeLabel b) {
+    return a.kind == b.kind && a.index == b.index;
+  }
 };
 
 /// One block as cut, in reference position.

@@ -148,7 +148,7 @@ class Bounded {
   }
   /// The joint on whose line a bridge lies.
   [[nodiscard]] EdgeLabel joint_of(std::size_t e) const {
-    return label_of(traces_[at(noded_.traces[e].front())].source);
+    return label_of(traces_[at(noded_.traces[e].front())]);
   }
 
   const CutInput& input_;

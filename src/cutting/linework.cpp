@@ -245,9 +245,10 @@ void add_bridges_in_gaps(const CutInput& input, const Box& window, Linework& wor
 
 }  // namespace
 
-EdgeLabel label_of(rockmass::TraceSource source) {
-  const bool statistical = source.kind == rockmass::TraceSource::Kind::joint_set;
-  return {statistical ? EdgeKind::joint_set : EdgeKind::trace_map, static_cast<std::int16_t>(source.index)};
+EdgeLabel label_of(const rockmass::Trace& trace) {
+  const bool statistical = trace.source.kind == rockmass::TraceSource::Kind::joint_set;
+  return {statistical ? EdgeKind::joint_set : EdgeKind::trace_map,
+          static_cast<std::int16_t>(trace.source.index), trace.number};
 }
 
 Linework make_linework(const CutInput& input, const CutTolerances& tolerances) {
@@ -286,8 +287,7 @@ Linework make_linework(const CutInput& input, const CutTolerances& tolerances) {
     Vec2 a = input.traces[k].a, b = input.traces[k].b;
     if (!clip(window, a, b)) continue;
     const GridPoint from = work.to_grid(a), to = work.to_grid(b);
-    if (!(from == to))
-      work.lines.push_back({from, to, label_of(input.traces[k].source), static_cast<int>(k)});
+    if (!(from == to)) work.lines.push_back({from, to, label_of(input.traces[k]), static_cast<int>(k)});
   }
   add_bridges_in_gaps(input, window, work);
   EndSnapper(work.lines, bounds({work.domain, {}}), std::max(snapping / work.grid, rounding_reach)).run();

@@ -31,7 +31,7 @@ struct Linework {
 };
 
 /// Of the pieces of a trace.
-EdgeLabel label_of(rockmass::TraceSource source);
+EdgeLabel label_of(const rockmass::Trace& trace);
 
 /// Checks the rings, chooses the grid and puts the ends of traces on the lines within the snapping distance of them.
 /// Traces are clipped to a box a little larger than the domain. Throws InputError.

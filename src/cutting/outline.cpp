@@ -18,6 +18,31 @@ struct LabelledRing {
   std::vector<EdgeLabel> labels;
 };
 
+/// The label of pieces of one set, map or outline that become one edge: its trace is that of most of the length, of equals the first by number.
+class LabelOfPieces {
+ public:
+  void add(EdgeLabel label, double length) {
+    if (lengths_.empty()) label_ = label;
+    const auto known = std::ranges::find(lengths_, label.trace, &std::pair<int, double>::first);
+    known == lengths_.end() ? void(lengths_.emplace_back(label.trace, length))
+                            : void(known->second += length);
+  }
+  [[nodiscard]] EdgeLabel label() const {
+    EdgeLabel label = label_;
+    double longest = -1.0;
+    for (const auto& [trace, length] : lengths_) {
+      if (length < longest || (length == longest && trace > label.trace)) continue;
+      longest = length;
+      label.trace = trace;
+    }
+    return label;
+  }
+
+ private:
+  EdgeLabel label_;
+  std::vector<std::pair<int, double>> lengths_;  ///< by trace
+};
+
 double distance_to_line(Vec2 p, Vec2 a, Vec2 b) {
   const Vec2 d = b - a;
   const double s = std::clamp(dot(p - a, d) / squared_norm(d), 0.0, 1.0);
@@ -41,8 +66,13 @@ class RingSimplifier {
     LabelledRing result;
     for (std::size_t k = 0; k < n; ++k) {
       if (!keep[k]) continue;
+      LabelOfPieces label;
+      std::size_t end = k;
+      do {
+        label.add(ring.labels[end], norm(place(ring.vertices, end + 1) - place(ring.vertices, end)));
+      } while (++end < n && !keep[end]);
       result.vertices.push_back(ring.vertices[k]);
-      result.labels.push_back(ring.labels[k]);
+      result.labels.push_back(label.label());
     }
     return result;
   }
@@ -102,21 +132,26 @@ class RingSimplifier {
 /// the points are compared. Vertices that are `dropped` are left out.
 LabelledRing labelled_ring(const PlanarGraph& graph, const std::vector<HalfEdge>& whole,
                            const std::vector<char>& dropped) {
-  std::vector<HalfEdge> ring;
-  for (const HalfEdge h : whole) {
-    if (!dropped[at(graph.origin(h))]) ring.push_back(h);
+  const std::size_t n = whole.size();
+  std::size_t lowest = n;
+  for (std::size_t k = 0; k < n; ++k) {
+    const int v = graph.origin(whole[k]);
+    if (!dropped[at(v)] && (lowest == n || graph.point(v) < graph.point(graph.origin(whole[lowest]))))
+      lowest = k;
   }
-  const auto lowest = std::min_element(ring.begin(), ring.end(), [&](HalfEdge g, HalfEdge h) {
-    return graph.point(graph.origin(g)) < graph.point(graph.origin(h));
-  });
   LabelledRing result;
-  for (std::size_t k = 0; k < ring.size(); ++k) {
-    const HalfEdge h = ring[(k + static_cast<std::size_t>(lowest - ring.begin())) % ring.size()];
-    result.vertices.push_back(graph.origin(h));
+  std::vector<LabelOfPieces> labels;
+  for (std::size_t k = 0; k < n && lowest < n; ++k) {
+    const HalfEdge h = whole[(k + lowest) % n];
+    if (!dropped[at(graph.origin(h))]) {
+      result.vertices.push_back(graph.origin(h));
+      labels.emplace_back();
+    }
     EdgeLabel label = graph.edge(h).label;
     if (label.kind == EdgeKind::domain) label.index = 0;
-    result.labels.push_back(label);
+    labels.back().add(label, graph.length(graph.edge(h)));
   }
+  for (const LabelOfPieces& label : labels) result.labels.push_back(label.label());
   return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "scenario/far_rock.h"
 #include "scenario/inputs.h"
+#include "scenario/joint_table.h"
 #include "scenario/joint_warnings.h"
 #include "simulation/build_model.h"
 #include "simulation/feasibility.h"
@@ -30,6 +31,8 @@ Checked check(const scenario::Scenario& scenario, int realization) {
         checked.notes.push_back(fmt::format("{}: {}", name, value));
     }
     for (const auto& [name, value] : scenario::boundary_facts(setup))
+      checked.notes.push_back(fmt::format("{}: {}", name, value));
+    for (const auto& [name, value] : scenario::strength_facts(setup.joints))
       checked.notes.push_back(fmt::format("{}: {}", name, value));
     if (const auto reason = simulation::yields_without_limit(setup))
       checked.warnings.push_back("a run ends at once: " + *reason);

@@ -14,6 +14,7 @@
 #include "geometry/vec2.h"
 #include "record/boundary.h"
 #include "record/element_record.h"
+#include "record/joint_records.h"
 #include "record/stage.h"
 
 /// What a run tells the outside: plain data, written to the result file and drawn in the report.
@@ -72,6 +73,8 @@ struct ModelRecord {
   std::vector<cutting::EdgeLabel>
       edge_label;                        ///< of the piece from each display vertex to the next of its ring
   std::vector<std::string> stage_names;  ///< of the whole plan; a run that is stopped has records of fewer
+  std::vector<JointRecord> joints;  ///< of sets, then maps; by trace where these have strengths of their own
+  std::vector<DrawnStrength> strengths;  ///< that were drawn, or that maps have
   std::vector<std::string> joint_set_names, trace_map_names, excavation_names;
   std::vector<std::vector<Vec2>> excavation_outlines;
   std::vector<std::string> history_names;  ///< of those that follow points

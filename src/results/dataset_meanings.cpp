@@ -43,6 +43,7 @@ std::vector<Dimensions> dimensions(const record::ModelRecord& model) {
                               {"model/vertices", {"vertex", "component"}},
                               {"model/edge_kind", {"vertex"}},
                               {"model/edge_index", {"vertex"}},
+                              {"model/edge_trace", {"vertex"}},
                               {"model/block_centroid", {"block", "component"}},
                               {"contacts/position", {contact, "component"}},
                               {"contacts/normal", {contact, "component"}}};
@@ -62,6 +63,12 @@ std::vector<Dimensions> dimensions(const record::ModelRecord& model) {
        {"model/block_name", "model/block_order", "model/block_fixed", "model/block_area",
         "model/block_density", "model/block_stress_ratio_zz", "model/block_young", "model/block_poisson"})
     all.push_back({name, {"block"}});
+  if (!model.joints.empty()) {
+    for (const char* name : {"joints/edge_kind", "joints/edge_index", "joints/trace"})
+      all.push_back({name, {"joint"}});
+    for (const record::JointField& field : record::joint_fields)
+      all.push_back({"joints/" + std::string(field.name), {"joint"}});
+  }
   if (!model.elements.empty()) {
     for (const char* name : {"elements/name", "elements/kind", "elements/limit"})
       all.push_back({name, {"element"}});
@@ -114,6 +121,7 @@ std::vector<Meaning> of_the_model() {
        {},
        kinds},
       {"model/edge_index", "1", "which joint set, trace map or excavation of edge_kind"},
+      {"model/edge_trace", "1", "which trace of the set or map; -1: none"},
       {"model/block_rings", "1",
        "entries [block_rings[b], block_rings[b + 1]) of ring_start belong to block b"},
       {"model/ring_start", "1",
@@ -197,6 +205,22 @@ std::vector<Meaning> of_rows() {
       {"summary", "", "the text of summary.json, bytes"}};
 }
 
+std::vector<Meaning> of_joints(const record::ModelRecord& model) {
+  if (model.joints.empty()) return {};
+  std::vector<Meaning> all{
+      {"joint", "1", "number of the row of joints"},
+      {"joints/edge_kind",
+       "1",
+       "joint set or trace map",
+       {},
+       names_up_to(cutting::EdgeKind::domain, edge_kind_name)},
+      {"joints/edge_index", "1", "which joint set or trace map"},
+      {"joints/trace", "1", "trace whose strength it is, as model/edge_trace; -1: all have it"}};
+  for (const record::JointField& field : record::joint_fields)
+    all.push_back({"joints/" + std::string(field.name), field.unit, field.meaning});
+  return all;
+}
+
 std::vector<Meaning> of_elements(const record::ModelRecord& model) {
   if (model.elements.empty()) return {};
   std::vector<Meaning> all{{"element", "1", "number of the element"},
@@ -229,8 +253,8 @@ std::vector<Meaning> of_element_histories(const record::ModelRecord& model) {
 
 std::vector<Meaning> all_meanings(const record::ModelRecord& model) {
   std::vector<Meaning> all;
-  for (auto& meanings : {of_the_model(), of_frames(), of_contacts(), of_rows(), of_elements(model),
-                         of_element_histories(model)})
+  for (auto& meanings : {of_the_model(), of_frames(), of_contacts(), of_rows(), of_joints(model),
+                         of_elements(model), of_element_histories(model)})
     all.insert(all.end(), meanings.begin(), meanings.end());
   return all;
 }

@@ -15,6 +15,7 @@
 #include "results/csv.h"
 #include "results/elements_json.h"
 #include "results/export_folder.h"
+#include "results/joint_table.h"
 
 namespace keyblock::results {
 namespace {
@@ -175,6 +176,8 @@ std::vector<std::filesystem::path> export_csv(const RunData& data, FileSet& out)
   std::vector<std::filesystem::path> files{out.write("blocks.csv", block_table(data)),
                                            out.write("contacts.csv", contact_table(data)),
                                            out.write("steps.csv", step_table(data))};
+  if (const std::string joints = joint_table(data.model); !joints.empty())
+    files.push_back(out.write("joints.csv", joints));
   if (has_histories(data.model))
     files.push_back(out.write("histories.csv", histories_csv(data.model, data.histories)));
   if (const std::string elements = element_table(data.run.elements, data.model.origin); !elements.empty())

@@ -6,6 +6,7 @@
 #include "core/checked_json.h"
 #include "core/error.h"
 #include "record/record_fields.h"
+#include "results/joint_table.h"
 #include "results/record_json.h"
 #include "results/result_tables.h"
 
@@ -117,6 +118,7 @@ void write_scales(hid_t file, const record::ModelRecord& model) {
   numbered("block", model.blocks.size());
   numbered("vertex", model.vertices.size());
   numbered("point", model.history_names.size());
+  if (!model.joints.empty()) numbered("joint", model.joints.size());
   if (!model.elements.empty()) numbered("element", model.elements.size());
   if (!model.element_histories.empty()) numbered("element_history", model.element_histories.size());
   const auto named = [&](const char* name, const std::vector<std::string>& names) {
@@ -179,6 +181,7 @@ void write_model(hid_t file, const record::ModelRecord& model) {
   std::vector<std::int32_t> order;
   std::vector<std::uint8_t> fixed, edge_kind;
   std::vector<std::int16_t> edge_index;
+  std::vector<std::int32_t> edge_trace;
   std::vector<double> area, density, ratio_zz, young, poisson;
   std::vector<Vec2> centroid;
   Lists rings, excavations;
@@ -198,6 +201,7 @@ void write_model(hid_t file, const record::ModelRecord& model) {
   for (const cutting::EdgeLabel label : model.edge_label) {
     edge_kind.push_back(static_cast<std::uint8_t>(label.kind));
     edge_index.push_back(label.index);
+    edge_trace.push_back(label.trace);
   }
   hdf5::write_strings(group, "block_name", name);
   write_column(group, "block_order", order);
@@ -215,6 +219,8 @@ void write_model(hid_t file, const record::ModelRecord& model) {
   write_points(group, "vertices", model.vertices);
   write_column(group, "edge_kind", edge_kind);
   write_column(group, "edge_index", edge_index);
+  write_column(group, "edge_trace", edge_trace);
+  write_joints(file, model);
   write_element_catalogue(file, model);
 }
 
@@ -250,15 +256,23 @@ record::ModelRecord read_model(hid_t file) {
   model.vertices = read_points(group, "vertices");
   const auto edge_kind = read_column<std::uint8_t>(group, "edge_kind");
   const auto edge_index = read_column<std::int16_t>(group, "edge_index");
-  if (edge_kind.rows() != edge_index.rows())
-    throw RunError("model/edge_kind and model/edge_index differ in length");
+  // Files of earlier versions have none.
+  const bool has_traces = H5Lexists(group, "edge_trace", H5P_DEFAULT) > 0;
+  const auto edge_trace =
+      has_traces
+          ? read_column<std::int32_t>(group, "edge_trace")
+          : hdf5::Array<std::int32_t>{{edge_kind.rows()}, std::vector<std::int32_t>(edge_kind.rows(), -1)};
+  if (edge_kind.rows() != edge_index.rows() || edge_kind.rows() != edge_trace.rows())
+    throw RunError("model/edge_kind, model/edge_index and model/edge_trace differ in length");
   for (std::size_t k = 0; k < edge_kind.rows(); ++k) {
     if (edge_kind.values[k] > static_cast<std::uint8_t>(cutting::EdgeKind::domain)) {
       throw RunError("model/edge_kind holds an unknown value");
     }
-    model.edge_label.push_back({static_cast<cutting::EdgeKind>(edge_kind.values[k]), edge_index.values[k]});
+    model.edge_label.push_back(
+        {static_cast<cutting::EdgeKind>(edge_kind.values[k]), edge_index.values[k], edge_trace.values[k]});
   }
   check_places(model);
+  read_joints(file, model);
   read_element_catalogue(file, model);
   return model;
 }

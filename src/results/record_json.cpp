@@ -7,8 +7,10 @@
 #include "core/error.h"
 #include "cutting/cut_fields.h"
 #include "record/run_fields.h"
+#include "record/strengths_json.h"
 #include "results/elements_json.h"
 #include "results/field_json.h"
+#include "results/joint_table.h"
 #include "results/json_parts.h"
 #include "results/stage_json.h"
 
@@ -64,6 +66,7 @@ std::string model_json(const record::ModelRecord& model) {
                     {"closure_is_lower_bound", model.closure_is_lower_bound},
                     {"ground", ground_json(model.ground)},
                     {"hooks", model.hooks}};
+  if (!model.strengths.empty()) json["strengths"] = record::strengths_json<ordered_json>(model.strengths);
   add_element_names(model, json);
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -96,6 +99,7 @@ void read_model_json(const std::string& text, record::ModelRecord& model) {
     if (json.contains("closure_is_lower_bound"))
       json.at("closure_is_lower_bound").get_to(model.closure_is_lower_bound);
     if (json.contains("ground")) model.ground = read_ground(json.at("ground"));
+    if (json.contains("strengths")) model.strengths = read_strengths(json.at("strengths"));
     if (json.contains("hooks")) json.at("hooks").get_to(model.hooks);
     return 0;
   });

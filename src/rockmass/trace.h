@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "geometry/vec2.h"
@@ -17,7 +18,11 @@ struct Trace {
   Vec2 a;
   Vec2 b;
   TraceSource source;
-  int polyline = -1;  ///< which one of its map it is a piece of; −1: it is a whole trace
+  int number =
+      -1;  ///< which trace of its set or map it is a piece of; −1: it is a whole trace without a number
+  /// Where the strengths of the trace are drawn (random_strength.h): its line and its interval on the line, which a larger window does not change.
+  /// Of a map: 0, and the number.
+  std::uint32_t line = 0, interval = 0;
 };
 
 /// For every piece the number of its trace, counted from 0. Pieces of one trace follow each other.

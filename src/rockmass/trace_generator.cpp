@@ -151,6 +151,11 @@ class Generator {
   }
 
  private:
+  /// Of a trace: line and interval, by the numbers of their draws.
+  struct Place {
+    std::uint32_t line, interval;
+  };
+
   [[nodiscard]] RandomStream line_stream(std::uint32_t number) const {
     return {seed_, realization_, static_cast<std::uint32_t>(source_.index), number};
   }
@@ -164,7 +169,7 @@ class Generator {
     const Start start = stationary_start(stream, cycle);
     std::vector<OnLine> of_line;
     const auto add = [&](std::uint32_t i, double begin) {
-      const OnLine trace = trace_of(stream, i, position, begin, length(i));
+      const OnLine trace = trace_of(stream, {1u + folded(number), i}, position, begin, length(i));
       add_trace(trace);
       if (wants_gaps_) of_line.push_back(trace);
     };
@@ -184,26 +189,30 @@ class Generator {
   struct OnLine {
     double begin = 0.0;
     Vec2 a, b;
+    Place place;
   };
 
-  [[nodiscard]] OnLine trace_of(const RandomStream& stream, std::uint32_t interval, double position,
-                                double begin, double length) const {
+  [[nodiscard]] OnLine trace_of(const RandomStream& stream, Place place, double position, double begin,
+                                double length) const {
     const Vec2 middle = centre_ + position * perpendicular(along_) + (begin + 0.5 * length) * along_;
     Vec2 direction = along_;
     if (scattered_) {
-      const double dip = set_.dip + set_.dip_std * inverse_normal_cdf(draw(stream, interval, Draw::dip));
+      const double dip =
+          set_.dip + set_.dip_std * inverse_normal_cdf(draw(stream, place.interval, Draw::dip));
       const double dip_direction =
           set_.dip_direction +
-          set_.dip_direction_std * inverse_normal_cdf(draw(stream, interval, Draw::dip_direction));
+          set_.dip_direction_std * inverse_normal_cdf(draw(stream, place.interval, Draw::dip_direction));
       direction = direction_of(apparent_dip(dip, dip_direction, azimuth_));
     }
-    return {begin, on_grid(middle - 0.5 * length * direction), on_grid(middle + 0.5 * length * direction)};
+    return {begin, on_grid(middle - 0.5 * length * direction), on_grid(middle + 0.5 * length * direction),
+            place};
   }
 
   void add_trace(const OnLine& trace) {
     if (++drawn_ > max_traces) refuse(set_, fmt::format("more than {:.0g}", max_traces));
     if (!(trace.a == trace.b) && meets(window_, trace.a, trace.b))
-      traces_.push_back({trace.a, trace.b, source_});
+      traces_.push_back({trace.a, trace.b, source_, static_cast<int>(traces_.size()), trace.place.line,
+                         trace.place.interval});
   }
 
   void add_gap(Vec2 a, Vec2 b) {

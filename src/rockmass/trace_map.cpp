@@ -1,6 +1,7 @@
 #include "rockmass/trace_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/atomic_file.h"
@@ -31,16 +32,17 @@ bool seems_to_be_degrees(const Box& box) {
 
 std::optional<std::string> MapReader::add(const std::vector<Vec2>& vertices) {
   const std::size_t before = traces_.size();
+  const auto count = static_cast<int>(strengths_.size());
   for (std::size_t k = 0; k + 1 < vertices.size(); ++k) {
     if (!(vertices[k] == vertices[k + 1]))
-      traces_.push_back({vertices[k], vertices[k + 1], source_, polylines_});
+      traces_.push_back({vertices[k], vertices[k + 1], source_, count, 0, static_cast<std::uint32_t>(count)});
   }
   if (traces_.size() == before) {
     return vertices.size() == 1 ? "a trace of one vertex"
                                 : fmt::format("a trace of {} equal vertices", vertices.size());
   }
   for (const Vec2 p : vertices) box_.add(p);
-  ++polylines_;
+  strengths_.push_back(strength_);
   return std::nullopt;
 }
 
@@ -71,7 +73,24 @@ std::vector<Trace> MapReader::finish() {
   return std::move(traces_);
 }
 
-std::vector<Trace> read_trace_map(const std::filesystem::path& path, int map_index) {
+void MapReader::take_strengths(std::vector<TraceStrength>* strengths) {
+  if (strengths == nullptr) return;
+  const auto is_empty = [](const TraceStrength& strength) { return strength == TraceStrength{}; };
+  if (std::ranges::all_of(strengths_, is_empty)) strengths_.clear();
+  *strengths = std::move(strengths_);
+}
+
+std::string strength_expected(StrengthKey key) {
+  return is_friction(key) ? "a friction angle, at least 0 and below 90°" : "a number of at least 0, in Pa";
+}
+
+bool is_strength(StrengthKey key, double value) {
+  constexpr double right_angle = 90.0;
+  return std::isfinite(value) && value >= 0.0 && (!is_friction(key) || value < right_angle);
+}
+
+std::vector<Trace> read_trace_map(const std::filesystem::path& path, int map_index,
+                                  std::vector<TraceStrength>* strengths) {
   const std::string text = read_file(path);
   MapReader map(path.string(), map_index);
   if (const auto foreign = foreign_format(text)) {
@@ -87,7 +106,9 @@ std::vector<Trace> read_trace_map(const std::filesystem::path& path, int map_ind
   } else {
     read_trace_table(text, map);
   }
-  return map.finish();
+  std::vector<Trace> traces = map.finish();
+  map.take_strengths(strengths);
+  return traces;
 }
 
 std::vector<Trace> traces_of(const std::vector<std::vector<Vec2>>& lines, int map_index) {

@@ -2,12 +2,13 @@
 #include <filesystem>
 #include <vector>
 
+#include "rockmass/random_strength.h"
 #include "rockmass/trace.h"
 
 namespace keyblock::rockmass {
 
 /// The traces of a digitised map, coordinates as in the file. Every straight piece is one Trace with source
-/// {trace_map, map_index} and the number of its polyline; pieces of length zero are left out.
+/// {trace_map, map_index} and the number of its trace; pieces of length zero are left out.
 ///
 /// The contents of the file say what it is:
 /// - GeoJSON (RFC 7946): LineString and MultiLineString, bare, in a Feature, a FeatureCollection or a
@@ -22,11 +23,15 @@ namespace keyblock::rockmass {
 ///   else stands beside them: a trace in each row.
 ///   With no header: a trace in each row, x y x y …. Rows that begin with their number are refused.
 ///
+/// `strengths`, if given, receives those of each trace, by its number: columns of a table with one of strength_names, in which every row of a trace has
+/// the same or nothing, and members of `properties` of a GeoJSON feature. Empty where the file has none.
+///
 /// Throws InputError with every mistake of the file (at most 20): unreadable file, a file of another kind, which is named,
 /// syntax, missing columns, other geometry, lists and objects nested too deeply, numbers missing or not finite, traces of
-/// fewer than two different vertices, traces that go on after rows of another one, and coordinates in degrees: the file says so,
+/// fewer than two different vertices, traces that go on after rows of another one, strengths that are none, and coordinates in degrees: the file says so,
 /// or they lie as only degrees do.
-std::vector<Trace> read_trace_map(const std::filesystem::path& path, int map_index);
+std::vector<Trace> read_trace_map(const std::filesystem::path& path, int map_index,
+                                  std::vector<TraceStrength>* strengths = nullptr);
 
 /// A trace through the vertices of each line, of which two differ.
 std::vector<Trace> traces_of(const std::vector<std::vector<Vec2>>& lines, int map_index);

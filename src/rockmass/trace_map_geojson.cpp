@@ -130,9 +130,11 @@ class GeoJsonReader {
     } else if (type == "GeometryCollection") {
       members(value, key, "geometries");
     } else if (type == "Feature") {
+      map_.set_strength(strength_of(value, key));
       if (const auto geometry = value.find("geometry"); geometry != value.end() && !geometry->is_null()) {
         object(*geometry, join(key, "geometry"));
       }
+      map_.set_strength({});
     } else if (type == "LineString") {
       line(value, join(key, "coordinates"));
     } else if (type == "MultiLineString") {
@@ -146,6 +148,24 @@ class GeoJsonReader {
  private:
   static std::string join(const std::string& key, const std::string& member) {
     return key.empty() ? member : key + '.' + member;
+  }
+
+  /// By the properties of a feature.
+  TraceStrength strength_of(const Json& feature, const std::string& key) {
+    TraceStrength strength;
+    const auto properties = feature.find("properties");
+    if (properties == feature.end() || !properties->is_object()) return strength;
+    for (std::size_t k = 0; k < strength_count; ++k) {
+      const auto found = properties->find(strength_names[k]);
+      if (found == properties->end() || found->is_null()) continue;
+      const auto name = static_cast<StrengthKey>(k);
+      if (found->is_number() && is_strength(name, found->get<double>())) {
+        strength[k] = found->get<double>();
+      } else {
+        mistake(join(join(key, "properties"), strength_names[k]), text_of(*found), strength_expected(name));
+      }
+    }
+    return strength;
   }
 
   void members(const Json& value, const std::string& key, const char* name) {

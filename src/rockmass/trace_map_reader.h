@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "geometry/polygon.h"
+#include "rockmass/random_strength.h"
 #include "rockmass/trace.h"
 
 /// What the readers of trace maps share; for trace_map*.cpp alone.
@@ -33,6 +34,8 @@ class MapReader {
   static constexpr const char* trace_expected = "two or more different vertices";
   static constexpr const char* format_expected = "GeoJSON, WKT, or a table with the columns trace, x, y";
 
+  /// Of the traces that are added from now on.
+  void set_strength(const TraceStrength& strength) { strength_ = strength; }
   /// Adds a trace. Returns what is found in place of one that has no two different vertices.
   std::optional<std::string> add(const std::vector<Vec2>& vertices);
 
@@ -41,6 +44,8 @@ class MapReader {
 
   /// All traces. Throws the mistakes, if there are any; coordinates in degrees are one.
   std::vector<Trace> finish();
+  /// Of each trace; empty where there are none.
+  void take_strengths(std::vector<TraceStrength>* strengths);
 
  private:
   /// Mistakes beyond this number are not listed.
@@ -51,11 +56,16 @@ class MapReader {
   std::string file_;
   TraceSource source_;
   std::vector<Trace> traces_;
-  int polylines_ = 0;
+  TraceStrength strength_;                ///< of the next trace
+  std::vector<TraceStrength> strengths_;  ///< by number of the trace
   Box box_;
   Diagnostic system_;  ///< where the file names its system of coordinates, and as what
   std::vector<Diagnostic> mistakes_;
 };
+
+bool is_strength(StrengthKey key, double value);
+/// What is expected of one.
+std::string strength_expected(StrengthKey key);
 
 /// Of an offset into the text, counted from 1.
 std::pair<int, int> line_and_column(std::string_view text, std::size_t offset);

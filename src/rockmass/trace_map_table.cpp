@@ -206,6 +206,7 @@ class TableReader {
     int last_line = 0;     ///< of its last one so far
     bool complete = true;  ///< no row of it had a mistake
     std::vector<Vec2> vertices;
+    TraceStrength strength = {};
   };
 
   /// What kind of table the first line begins.
@@ -217,6 +218,7 @@ class TableReader {
       columns_ = cells.size();
       const auto x = place_of(names, {"x", "lon", "long", "lng", "longitude"});
       const auto y = place_of(names, {"y", "lat", "latitude"});
+      if (!find_strengths(names, cells, number)) return false;
       if (const auto trace = place_of(names, {"trace"}); trace && x && y) {
         places_ = {*trace, *x, *y};
         if (names[*x] != "x" && names[*y] != "y")
@@ -244,6 +246,43 @@ class TableReader {
     }
     missing_columns(line, number);
     return false;
+  }
+
+  /// Columns of strengths. False: one is there twice.
+  bool find_strengths(const std::vector<std::string>& names, const std::vector<Cell>& cells, int number) {
+    for (std::size_t k = 0; k < strength_count; ++k) {
+      strength_places_[k] = place_of(names, {strength_names[k]});
+      if (!strength_places_[k]) continue;
+      const auto first = names.begin() + static_cast<std::ptrdiff_t>(*strength_places_[k]);
+      const auto again = std::find(first + 1, names.end(), strength_names[k]);
+      if (again == names.end()) continue;
+      map_.mistake(number, cells[static_cast<std::size_t>(again - names.begin())].column, strength_names[k],
+                   "the column again", "every column once");
+      return false;
+    }
+    return true;
+  }
+
+  /// Of the row of a trace. What other rows of it have must be the same.
+  bool add_strengths(const std::vector<Cell>& cells, int number, TraceStrength& strength) {
+    bool complete = true;
+    for (std::size_t k = 0; k < strength_count; ++k) {
+      const auto place = strength_places_[k];
+      if (!place || *place >= cells.size() || cells[*place].text.empty()) continue;
+      const Cell& cell = cells[*place];
+      const auto key = static_cast<StrengthKey>(k);
+      const std::optional<double> value = finite_number(cell.text, separator_);
+      const bool is_other = value && strength[k] && *strength[k] != *value;
+      if (!value || !is_strength(key, *value) || is_other) {
+        map_.mistake(number, cell.column, strength_names[k], '"' + cell.text + '"',
+                     is_other ? fmt::format("{} as in the rows before: a trace has one", *strength[k])
+                              : strength_expected(key));
+        complete = false;
+        continue;
+      }
+      strength[k] = value;
+    }
+    return complete;
   }
 
   /// `x1 y1 x2 y2 x1` does not say which x1 is meant.
@@ -300,7 +339,11 @@ class TableReader {
       map_.mistake(number, 1, "", fmt::format("{} cells", cells.size()), fmt::format("{} or more", needed));
     } else if (kind_ == Kind::wkt) {
       const Cell& cell = cells[places_[0]];
-      if (!cell.text.empty()) read_wkt(cell.text, map_, number, cell.column);
+      TraceStrength strength;
+      if (!cell.text.empty() && add_strengths(cells, number, strength)) {
+        map_.set_strength(strength);
+        read_wkt(cell.text, map_, number, cell.column);
+      }
     } else {
       row_of_vertex(cells, number);
     }
@@ -316,7 +359,7 @@ class TableReader {
     }
     const std::optional<double> x = coordinate(cells[places_[1]], "x", number),
                                 y = coordinate(cells[places_[2]], "y", number);
-    if (x && y) {
+    if (x && y && add_strengths(cells, number, trace.strength)) {
       trace.vertices.push_back({*x, *y});
     } else {
       trace.complete = false;
@@ -342,6 +385,7 @@ class TableReader {
   void row_of_ends(const std::vector<Cell>& cells, int number) {
     traces_.push_back({"", number, number, true, {}});
     Polyline& trace = traces_.back();
+    trace.complete = add_strengths(cells, number, trace.strength);
     for (std::size_t k = 0; k < vertex_places_.size(); ++k) {
       const auto [at_x, at_y] = vertex_places_[k];
       const bool there = at_x < cells.size() && at_y < cells.size();
@@ -425,6 +469,7 @@ class TableReader {
     }
     for (const Polyline& trace : traces_) {
       if (!trace.complete) continue;
+      map_.set_strength(trace.strength);
       if (auto found = map_.add(trace.vertices)) {
         map_.mistake(trace.line, 1, trace.name.empty() ? "" : "trace " + trace.name, std::move(*found),
                      MapReader::trace_expected);
@@ -437,6 +482,7 @@ class TableReader {
   Kind kind_ = Kind::unknown;
   bool headerless_ = false;
   char separator_ = ',';
+  std::array<std::optional<std::size_t>, strength_count> strength_places_{};
   std::array<std::size_t, 3> places_{};                             ///< of trace, x, y; of the geometry
   std::size_t columns_ = 0;                                         ///< of the header
   std::vector<std::pair<std::size_t, std::size_t>> vertex_places_;  ///< x and y of each vertex of a row

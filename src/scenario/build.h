@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "cutting/block_system.h"
+#include "rockmass/random_strength.h"
 #include "rockmass/trace.h"
 #include "scenario/scenario.h"
 #include "simulation/setup.h"
@@ -12,7 +13,10 @@ namespace keyblock::scenario {
 /// The joints and blocks of one realization.
 struct BlockModel {
   std::vector<rockmass::Trace> traces;  ///< generated and mapped, real coordinates
-  std::vector<Ring> outlines;           ///< of the excavations, counter-clockwise, real coordinates
+  int realization = 0;
+  /// Strengths that trace maps have of their own, by map and number of the trace; empty for maps without.
+  std::vector<std::vector<rockmass::TraceStrength>> map_strengths;
+  std::vector<Ring> outlines;  ///< of the excavations, counter-clockwise, real coordinates
   /// The blocks cut from the domain, then those of the scenario with edges of kind `free`; an explicit block belongs
   /// to the excavations whose outline it lies in (excavated_blocks.h). Local coordinates. Without a domain the local origin is a
   /// rounded corner of the blocks if they lie far away.

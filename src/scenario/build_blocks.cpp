@@ -137,7 +137,7 @@ void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
     const auto set = generate(scenario, k, window, realization);
     model.traces.insert(model.traces.end(), set.begin(), set.end());
   }
-  const auto mapped = read_trace_maps(scenario);
+  const auto mapped = read_trace_maps(scenario, &model.map_strengths);
   model.traces.insert(model.traces.end(), mapped.begin(), mapped.end());
 
   cutting::CutInput input;
@@ -198,6 +198,7 @@ void place_interfaces(const Scenario& scenario, cutting::BlockSystem& system) {
 
 BlockModel build_blocks(const Scenario& scenario, int realization) {
   BlockModel model;
+  model.realization = realization;
   for (const ExcavationSpec& spec : scenario.excavations) model.outlines.push_back(excavation_outline(spec));
   if (scenario.domain) {
     cut_domain(scenario, realization, model);

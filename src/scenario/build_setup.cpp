@@ -11,6 +11,7 @@
 #include "scenario/far_rock.h"
 #include "scenario/ground_facts.h"
 #include "scenario/inputs.h"
+#include "scenario/joint_table.h"
 #include "scenario/joint_warnings.h"
 #include "scenario/key_path.h"
 #include "scenario/magnitudes.h"
@@ -195,7 +196,7 @@ void place_rock(const Scenario& scenario, const BlockModel& blocks, RunSetup& se
     setup.domain = {Vec2{domain.x.first, domain.y.first} - origin,
                     Vec2{domain.x.second, domain.y.second} - origin};
   }
-  setup.joints = joint_table(scenario);
+  setup.joints = joint_table(scenario, blocks);
   setup.joint_set_names = names_of(own_joint_sets(scenario));
   setup.trace_map_names = names_of(own_trace_maps(scenario));
   for (std::size_t k = 0; k < scenario.excavations.size(); ++k) {
@@ -204,6 +205,15 @@ void place_rock(const Scenario& scenario, const BlockModel& blocks, RunSetup& se
     const ExcavationSpec& spec = scenario.excavations[k];
     setup.excavations.push_back(
         {spec.name, std::move(outline), pressure_of(scenario, spec), spec.filled.value_or(false)});
+  }
+}
+
+void warn_of_capped(const RunSetup& setup, std::vector<std::string>& notes) {
+  for (const record::DrawnStrength& drawn : setup.joints.drawn) {
+    if (drawn.capped > 0)
+      notes.push_back(
+          fmt::format("{} of “{}”: {} of {} traces have more left than their peak; they keep the peak",
+                      drawn.key, drawn.joint, drawn.capped, drawn.traces));
   }
 }
 
@@ -257,6 +267,7 @@ void warn_of_made_energy(const Scenario& scenario, const RunSetup& setup, std::v
 void add_setup_warnings(const Scenario& scenario, RunSetup& setup, std::vector<std::string>& notes) {
   add_shaking_warnings(scenario, setup.motions, notes);
   add_boundary_warnings(scenario, setup, notes);
+  warn_of_capped(setup, notes);
   warn_of_made_energy(scenario, setup, notes);
   add_dynamic_warnings(scenario, setup, notes);
   add_size_warnings(scenario, setup, notes);
@@ -307,6 +318,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   for (const GroundFact& fact : earthquakes) setup.ground.emplace_back(fact.name, fact.value);
   if (std::string joints = joints_in_model(scenario, setup.system); !joints.empty())
     setup.ground.emplace_back("joints in the model, of their length", std::move(joints));
+  for (auto& fact : strength_facts(setup.joints)) setup.ground.push_back(std::move(fact));
   for (auto& fact : boundary_facts(setup)) setup.ground.push_back(std::move(fact));
   place_loading(scenario, origin, setup);
   place_histories(scenario, setup, notes);

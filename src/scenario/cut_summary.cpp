@@ -11,8 +11,10 @@
 #include "core/checked_json.h"
 #include "cutting/cut_fields.h"
 #include "cutting/edge_name.h"
+#include "record/strengths_json.h"
 #include "rockmass/intensity.h"
 #include "rockmass/section.h"
+#include "scenario/joint_table.h"
 #include "scenario/own_joints.h"
 
 namespace keyblock::scenario {
@@ -148,18 +150,20 @@ std::string cut_summary(const Scenario& scenario, int realization, const BlockMo
     for (std::size_t r = 0; r < block.polygon.ring_count(); ++r) vertices += block.polygon.ring(r).size();
   }
   const cutting::CutStatistics& cut = model.system.statistics;
-  const ordered_json json{{"title", scenario.title},
-                          {"version", version},
-                          {"seed", scenario.seed},
-                          {"realization", realization},
-                          {"blocks", model.system.blocks.size()},
-                          {"vertices", vertices},
-                          {"joints", cut.joints_used},
-                          {"area", {{"blocks", left}, {"excavated", excavated}, {"domain", cut.domain_area}}},
-                          {"merged_slivers", cut.merged_slivers},
-                          {"cutting", cutting::cutting_json<ordered_json>(cut, false)},
-                          {"teeth", teeth_json(scenario, model.system)},
-                          {"joint_sets", joint_sets(scenario, model)}};
+  const ordered_json json{
+      {"title", scenario.title},
+      {"version", version},
+      {"seed", scenario.seed},
+      {"realization", realization},
+      {"blocks", model.system.blocks.size()},
+      {"vertices", vertices},
+      {"joints", cut.joints_used},
+      {"area", {{"blocks", left}, {"excavated", excavated}, {"domain", cut.domain_area}}},
+      {"merged_slivers", cut.merged_slivers},
+      {"cutting", cutting::cutting_json<ordered_json>(cut, false)},
+      {"teeth", teeth_json(scenario, model.system)},
+      {"joint_sets", joint_sets(scenario, model)},
+      {"joint_strengths", record::strengths_json<ordered_json>(joint_table(scenario, model).drawn)}};
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

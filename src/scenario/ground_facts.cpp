@@ -14,6 +14,8 @@
 namespace keyblock::scenario {
 namespace {
 
+using rockmass::StrengthKey;
+
 /// Values of a fact that are named; of more, the first and the last.
 constexpr std::size_t most_values = 4;
 /// Loads that are listed one by one.
@@ -184,11 +186,23 @@ class Facts {
         fmt::format("kn {}, ks {}{}", pressure(normal, "/m"), pressure(shear, "/m"), standard));
   }
 
+  /// Of a strength that is drawn: " ± 3°".
+  static std::string spread(const JointKeys& joints, StrengthKey key) {
+    const auto& random = joints.random[static_cast<std::size_t>(key)];
+    if (!random || random->distribution.std == 0.0) return random ? " (drawn)" : "";
+    const double std = random->distribution.std;
+    return " ± " + (rockmass::is_friction(key) ? number(std) + "°" : pressure(std));
+  }
+
   /// What is left of strength, and after which slip.
   static std::string residual(const JointKeys& joints) {
     std::vector<std::string> parts;
-    if (joints.residual_friction) parts.push_back("φr " + number(*joints.residual_friction) + "°");
-    if (joints.residual_cohesion) parts.push_back("cr " + pressure(*joints.residual_cohesion));
+    if (joints.residual_friction)
+      parts.push_back("φr " + number(*joints.residual_friction) + "°" +
+                      spread(joints, StrengthKey::residual_friction));
+    if (joints.residual_cohesion)
+      parts.push_back("cr " + pressure(*joints.residual_cohesion) +
+                      spread(joints, StrengthKey::residual_cohesion));
     if (joints.weakening_slip)
       parts.push_back(*joints.weakening_slip > 0.0
                           ? "after a slip of " + number(*joints.weakening_slip) + " m"
@@ -199,9 +213,12 @@ class Facts {
   /// What a set or map gives of its own.
   static std::string own(const JointKeys& joints, const char* nothing) {
     std::vector<std::string> parts;
-    if (joints.friction) parts.push_back("φ " + number(*joints.friction) + "°");
-    if (joints.cohesion) parts.push_back("c " + pressure(*joints.cohesion));
-    if (joints.tension) parts.push_back("tensile strength " + pressure(*joints.tension));
+    if (joints.friction)
+      parts.push_back("φ " + number(*joints.friction) + "°" + spread(joints, StrengthKey::friction));
+    if (joints.cohesion)
+      parts.push_back("c " + pressure(*joints.cohesion) + spread(joints, StrengthKey::cohesion));
+    if (joints.tension)
+      parts.push_back("tensile strength " + pressure(*joints.tension) + spread(joints, StrengthKey::tension));
     if (joints.has_residual()) parts.push_back(residual(joints));
     if (joints.strength_factor) parts.push_back("strength divided by " + number(*joints.strength_factor));
     if (joints.normal_stiffness) parts.push_back("kn " + pressure(*joints.normal_stiffness, "/m"));

@@ -282,16 +282,19 @@ std::vector<simulation::InputFile> input_files(const Scenario& scenario) {
   return files;
 }
 
-std::vector<rockmass::Trace> read_trace_maps(const Scenario& scenario) {
+std::vector<rockmass::Trace> read_trace_maps(const Scenario& scenario,
+                                             std::vector<std::vector<rockmass::TraceStrength>>* strengths) {
   std::vector<rockmass::Trace> traces;
   std::vector<Diagnostic> mistakes;
   for (std::size_t k = 0; k < scenario.trace_maps.size(); ++k) {
     try {
       const TraceMapSpec& spec = scenario.trace_maps[k];
       const int index = static_cast<int>(k);
+      std::vector<rockmass::TraceStrength> of_map;
       const auto map = spec.file.empty() ? rockmass::traces_of(spec.lines, index)
-                                         : rockmass::read_trace_map(spec.file, index);
+                                         : rockmass::read_trace_map(spec.file, index, &of_map);
       traces.insert(traces.end(), map.begin(), map.end());
+      if (strengths != nullptr) strengths->push_back(std::move(of_map));
     } catch (const InputError& error) {
       append(mistakes, error);
     }

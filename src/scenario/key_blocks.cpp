@@ -9,6 +9,7 @@
 #include "core/checked_json.h"
 #include "core/index.h"
 #include "cutting/edge_name.h"
+#include "scenario/joint_table.h"
 #include "scenario/own_joints.h"
 #include "scenario/properties.h"
 
@@ -37,10 +38,21 @@ census::Input input_of(const Scenario& scenario, const BlockModel& model, double
     input.density.push_back(block.material.density);
     input.fixed.push_back(block.fixed);
   }
-  const simulation::JointTable joints = joint_table(scenario);
+  const simulation::JointTable joints = joint_table(scenario, model);
   input.standard = strength(joints.standard);
   for (const contact::JointProperties& joint : joints.joint_sets) input.joint_sets.push_back(strength(joint));
   for (const contact::JointProperties& joint : joints.trace_maps) input.trace_maps.push_back(strength(joint));
+  const auto of_traces = [&](const std::vector<std::vector<int>>& traces,
+                             const std::vector<FaceStrength>& of_set,
+                             std::vector<std::vector<FaceStrength>>& strengths) {
+    for (std::size_t k = 0; k < traces.size(); ++k) {
+      strengths.emplace_back();
+      for (const int place : traces[k])
+        strengths.back().push_back(place < 0 ? of_set[k] : strength(joints.of_traces[at(place)].joint));
+    }
+  };
+  of_traces(joints.joint_set_traces, input.joint_sets, input.joint_set_traces);
+  of_traces(joints.trace_map_traces, input.trace_maps, input.trace_map_traces);
   input.frame = strength(joints.frame);
   const bool has_frame = scenario.domain && scenario.domain->frame;
   input.rock_around = has_frame || scenario.boundary;

@@ -11,6 +11,7 @@
 #include "scenario/build.h"
 #include "scenario/ground_checks.h"
 #include "scenario/inputs.h"
+#include "scenario/joint_table.h"
 #include "scenario/joint_warnings.h"
 #include "scenario/key_path.h"
 #include "scenario/load_checks.h"
@@ -100,6 +101,18 @@ class Plausibility {
         warn("{}.{}: cut off at zero, its mean is {:.4g} instead of {:.4g}", spec.path, key, mean,
              distribution->mean);
       }
+      check_strengths(spec.path, spec.joints);
+    }
+    for (const TraceMapSpec& spec : scenario_.trace_maps) check_strengths(spec.path, spec.joints);
+  }
+
+  void check_strengths(const std::string& path, const JointKeys& joints) {
+    for (std::size_t k = 0; k < rockmass::strength_count; ++k) {
+      if (!joints.random[k] || joints.random[k]->distribution.mean <= 0.0) continue;
+      const double mean = joints.random[k]->truncated_mean(), asked = joints.random[k]->distribution.mean;
+      if (std::abs(mean - asked) > mean_tolerance * asked)
+        warn("{}.{}: cut off at {:.4g} and {:.4g}, its mean is {:.4g} instead of {:.4g}", path,
+             rockmass::strength_names[k], joints.random[k]->min, joints.random[k]->max, mean, asked);
     }
   }
 
@@ -419,13 +432,19 @@ std::vector<std::string> study_warnings(const Scenario& scenario) {
   std::vector<std::string> warnings;
   if (!scenario.study) return warnings;
   const StudySpec& study = *scenario.study;
-  if (scenario.joint_sets.empty() && study.until)
+  const bool is_random = !scenario.joint_sets.empty() || has_random_strengths(scenario);
+  if (!is_random && study.until)
     warnings.emplace_back(
         "study.until: nothing is random without a [[joint_set]]; all realizations are the same");
-  else if (scenario.joint_sets.empty() && study.realizations != 1)
+  else if (!is_random && study.realizations != 1)
     warnings.push_back(
         fmt::format("study.realizations = {}: nothing is random without a [[joint_set]]; all are the same",
                     study.realizations));
+  if (study.latin_hypercube && !has_strengths_of_realizations(scenario))
+    warnings.emplace_back(
+        "study.sampling = \"latin_hypercube\": no strength is drawn once in each realization (per = "
+        "\"realization\"), so that "
+        "it changes nothing");
   warn_of_levels(scenario, warnings);
   if (!study.vary.empty()) {
     std::vector<std::string> of_records;  // given where the scenario is read

@@ -11,7 +11,4 @@ namespace keyblock::scenario {
 std::vector<simulation::BlockProperties> properties_of(const Scenario& scenario,
                                                        const cutting::BlockSystem& system);
 
-/// Strength and stiffness of joints by set and map, divided by their strength_factor.
-simulation::JointTable joint_table(const Scenario& scenario);
-
 }  // namespace keyblock::scenario

@@ -15,6 +15,7 @@ using rockmass::Distribution;
 using rockmass::DistributionKind;
 using rockmass::most_lognormal_variation;
 using rockmass::SpacingMeasure;
+using rockmass::StrengthKey;
 
 constexpr Word<SpacingMeasure> spacing_measures[] = {{"true", SpacingMeasure::true_spacing},
                                                      {"trace", SpacingMeasure::trace_spacing}};
@@ -24,6 +25,10 @@ constexpr Word<DistributionKind> distribution_kinds[] = {{"constant", Distributi
                                                          {"lognormal", DistributionKind::lognormal},
                                                          {"exponential", DistributionKind::exponential}};
 
+/// Without "line": traces of a map lie on none.
+constexpr Word<rockmass::DrawnPer> per_of_maps[] = {{"joint", rockmass::DrawnPer::joint},
+                                                    {"realization", rockmass::DrawnPer::realization}};
+
 void check_variation(TableReader& t, const Distribution& distribution) {
   if (distribution.kind != DistributionKind::lognormal || distribution.mean <= 0.0) return;
   const double variation = distribution.std / distribution.mean;
@@ -32,7 +37,43 @@ void check_variation(TableReader& t, const Distribution& distribution) {
          fmt::format("at most {} times the mean for \"lognormal\"", most_lognormal_variation));
 }
 
-constexpr KeyKind length_kinds[] = {KeyKind::number};
+constexpr KeyKind number_kinds[] = {KeyKind::number};
+
+/// What is said of the mean and the standard deviation of a distribution.
+struct ShapeWords {
+  std::string_view unit, mean, beyond;
+  const Usual *usual = nullptr, *usual_std = nullptr;
+};
+
+/// `distribution`, `mean` and `std`.
+void read_shape(TableReader& d, Distribution& distribution, bool zero_allowed, const ShapeWords& words) {
+  d.word("distribution", distribution.kind, distribution_kinds,
+         {.meaning = "Its shape. `uniform` spans mean ± √3 std.", .required = true});
+  const bool constant = distribution.kind == DistributionKind::constant;
+  // One description for all.
+  const bool may_be_zero = d.documenting() || (zero_allowed && constant);
+  d.number("mean", distribution.mean,
+           {.meaning = words.mean,
+            .unit = words.unit,
+            .required = true,
+            .above = may_be_zero ? -HUGE_VAL : 0.0,
+            .at_least = may_be_zero ? 0.0 : -HUGE_VAL,
+            .usual = words.usual});
+  const bool needs_std = !constant && distribution.kind != DistributionKind::exponential;
+  const std::string std_text = fmt::format(
+      "Standard deviation. `uniform`, `normal` and `lognormal` need it; the others do not use it. For "
+      "`lognormal` it is "
+      "at most {} times the mean.{}",
+      most_lognormal_variation, words.beyond);
+  const bool given = d.number("std", distribution.std,
+                              {.meaning = std_text,
+                               .unit = words.unit,
+                               .required = needs_std && !d.documenting(),
+                               .at_least = 0.0,
+                               .fallback = "required where used",
+                               .usual = words.usual_std});
+  if (given) check_variation(d, distribution);
+}
 
 void read_distribution(TableReader& t, std::string_view key, Distribution& distribution, bool zero_allowed,
                        std::string_view meaning) {
@@ -46,7 +87,7 @@ void read_distribution(TableReader& t, std::string_view key, Distribution& distr
                       "A length that varies from joint to joint: a number (the same for all), or a "
                       "table such as `{ mean = 0.3, std = 0.1, distribution = \"normal\" }`. Mean and "
                       "standard deviation are those before the distribution is cut off at zero.",
-                  .kinds = length_kinds,
+                  .kinds = number_kinds,
                   .usual = &usual::spacing};
   const Value* value = t.find(key);
   if (value != nullptr && value->is_number()) {
@@ -59,57 +100,115 @@ void read_distribution(TableReader& t, std::string_view key, Distribution& distr
     return;
   }
   t.table(key, rule, [&](TableReader& d) {
-    d.word("distribution", distribution.kind, distribution_kinds,
-           {.meaning = "Its shape. `uniform` spans mean ± √3 std.", .required = true});
-    const bool constant = distribution.kind == DistributionKind::constant;
-    // One description for all lengths.
-    const bool may_be_zero = d.documenting() || (zero_allowed && constant);
-    d.number("mean", distribution.mean,
-             {.meaning = "Mean. Zero only where a constant gap is meant.",
-              .unit = "m",
-              .required = true,
-              .above = may_be_zero ? -HUGE_VAL : 0.0,
-              .at_least = may_be_zero ? 0.0 : -HUGE_VAL,
-              .usual = &usual::spacing});
-    const bool needs_std = !constant && distribution.kind != DistributionKind::exponential;
-    static const std::string std_text = fmt::format(
-        "Standard deviation. `uniform`, `normal` and `lognormal` need it; the others do not use it. For "
-        "`lognormal` it is "
-        "at most {} times the mean. Beyond that, fewer than 2 joints in 100 make half of the total length.",
-        most_lognormal_variation);
-    const bool given = d.number("std", distribution.std,
-                                {.meaning = std_text,
-                                 .unit = "m",
-                                 .required = needs_std && !t.documenting(),
-                                 .at_least = 0.0,
-                                 .fallback = "required where used",
-                                 .usual = &usual::spacing});
-    if (given) check_variation(d, distribution);
+    read_shape(d, distribution, zero_allowed,
+               {.unit = "m",
+                .mean = "Mean. Zero only where a constant gap is meant.",
+                .beyond = " Beyond that, fewer than 2 joints in 100 make half of the total length.",
+                .usual = &usual::spacing,
+                .usual_std = &usual::spacing});
   });
 }
 
+/// Whose keys they are: of a set or map they may be drawn, else they are numbers.
+enum class JointsOf { numbers, set, map };
+
 struct JointDefaults {
+  JointsOf of = JointsOf::numbers;
   bool friction_required = false;
   std::string_view zero, friction, normal, shear, residual_friction;
 };
 
+/// One description for all.
+std::string_view unit_of(const TableReader& d, StrengthKey key) {
+  return d.documenting() ? "of the key" : rockmass::strength_units[static_cast<std::size_t>(key)];
+}
+
+/// Ends of a distribution, and whether enough of it lies between them.
+void read_ends(TableReader& d, rockmass::RandomStrength& random, StrengthKey key) {
+  constexpr double least_kept = 0.01;
+  const bool is_angle = rockmass::is_friction(key);
+  if (is_angle) random.max = rockmass::most_friction;
+  const double at_most = is_angle && !d.documenting() ? rockmass::most_friction : HUGE_VAL;
+  d.number("min", random.min,
+           {.meaning = "Where it is cut off below.",
+            .unit = unit_of(d, key),
+            .at_least = 0.0,
+            .at_most = at_most});
+  d.number("max", random.max,
+           {.meaning = "Where it is cut off above.",
+            .unit = unit_of(d, key),
+            .at_least = 0.0,
+            .at_most = at_most,
+            .fallback = "89 of angles, else none"});
+  if (d.documenting()) return;
+  if (random.min >= random.max)
+    return d.fail(d.find("max") != nullptr ? "max" : "min",
+                  fmt::format("{} to {}, which is nothing", random.min, random.max), "a max above min");
+  const double mean = random.distribution.mean;
+  if (mean < random.min || mean > random.max)
+    return d.fail("mean", fmt::format("{}, outside of {} to {}", mean, random.min, random.max),
+                  "a mean from min to max");
+  if (random.kept() < least_kept)
+    d.fail("min",
+           fmt::format("{:.2g} of the distribution from {} to {}", random.kept(), random.min, random.max),
+           fmt::format("{} or more of it", least_kept));
+}
+
+/// A strength: a number, or of a set or map a distribution.
+void read_strength(TableReader& t, JointKeys& joints, StrengthKey key, JointsOf of, const Rule& number) {
+  const auto k = static_cast<std::size_t>(key);
+  const std::string_view name = rockmass::strength_names[k];
+  const Value* value = t.find(name);
+  const bool is_table = value != nullptr && value->is(Value::Type::table);
+  if (of == JointsOf::numbers || (!t.documenting() && !is_table)) {
+    t.number(name, joints.*strength_members[k], number);
+    return;
+  }
+  Rule rule = number;
+  rule.group = "Random strength";
+  rule.group_meaning =
+      "A strength of joints: a number, or a distribution such as `{ mean = 35, std = 3, distribution = "
+      "\"normal\", min = 25, max = 45 }`. An angle is below 90°, and drawn up to 89°. Mean and standard "
+      "deviation are those before it is cut off at "
+      "`min` and `max`. A residual strength above the peak of its joint is that of the peak.";
+  rule.kinds = number_kinds;
+  t.table(name, rule, [&](TableReader& d) {
+    rockmass::RandomStrength random;
+    read_shape(d, random.distribution, true,
+               {.unit = unit_of(d, key),
+                .mean = "Mean. Zero only where it is constant.",
+                .beyond = "",
+                .usual = number.usual});
+    read_ends(d, random, key);
+    const Rule per{
+        .meaning =
+            "What has one value: `joint`, a trace along all of it; `line`, all traces of a set on one line; "
+            "`realization`, the whole set or map. Traces of a map lie on no line."};
+    of == JointsOf::map && !d.documenting() ? d.word("per", random.per, per_of_maps, per)
+                                            : d.word("per", random.per, drawn_per_words, per);
+    joints.*strength_members[k] = random.distribution.mean;
+    joints.random[k] = random;
+  });
+}
+
 void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& defaults) {
-  t.number("friction", joints.friction,
-           {.meaning = "Friction angle.",
-            .unit = "°",
-            .required = defaults.friction_required,
-            .at_least = 0.0,
-            .below = 90.0,
-            .fallback = defaults.friction,
-            .usual = &usual::friction});
-  t.number("cohesion", joints.cohesion,
-           {.meaning = "Cohesion of a joint in place, lost when it slips or opens.",
-            .unit = "Pa",
-            .at_least = 0.0,
-            .fallback = defaults.zero,
-            .usual = &usual::strength});
-  t.number(
-      "tension", joints.tension,
+  const auto strength = [&](StrengthKey key, const Rule& rule) {
+    read_strength(t, joints, key, defaults.of, rule);
+  };
+  strength(StrengthKey::friction, {.meaning = "Friction angle.",
+                                   .unit = "°",
+                                   .required = defaults.friction_required,
+                                   .at_least = 0.0,
+                                   .below = 90.0,
+                                   .fallback = defaults.friction,
+                                   .usual = &usual::friction});
+  strength(StrengthKey::cohesion, {.meaning = "Cohesion of a joint in place, lost when it slips or opens.",
+                                   .unit = "Pa",
+                                   .at_least = 0.0,
+                                   .fallback = defaults.zero,
+                                   .usual = &usual::strength});
+  strength(
+      StrengthKey::tension,
       {.meaning =
            "Tensile strength of a joint in place, lost likewise. A joint that is pulled holds less shear, "
            "cohesion − tension · tan(friction): without cohesion the least shear breaks it.",
@@ -117,8 +216,8 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
        .at_least = 0.0,
        .fallback = defaults.zero,
        .usual = &usual::strength});
-  t.number(
-      "residual_friction", joints.residual_friction,
+  strength(
+      StrengthKey::residual_friction,
       {.meaning = "Friction angle that is left after weakening_slip, and of contacts where no joint was in "
                   "place.",
        .unit = "°",
@@ -126,8 +225,8 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
        .below = 90.0,
        .fallback = defaults.residual_friction,
        .usual = &usual::friction});
-  t.number(
-      "residual_cohesion", joints.residual_cohesion,
+  strength(
+      StrengthKey::residual_cohesion,
       {.meaning = "Cohesion that is left after weakening_slip, until the joint opens. The same as cohesion: "
                   "slip takes none (ideal plasticity).",
        .unit = "Pa",
@@ -156,10 +255,22 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
             .usual = &usual::stiffness});
 }
 
-constexpr JointDefaults joint_defaults{true,      "0", "", "20 young per metre", "0.4 normal_stiffness",
-                                       "friction"};
-constexpr JointDefaults set_defaults{false,         "of [joints]", "of [joints]",
-                                     "of [joints]", "of [joints]", "of [joints]; else friction"};
+constexpr JointDefaults joint_defaults{JointsOf::numbers,      true,      "0", "", "20 young per metre",
+                                       "0.4 normal_stiffness", "friction"};
+constexpr JointDefaults set_defaults{JointsOf::set,
+                                     false,
+                                     "of [joints]",
+                                     "of [joints]",
+                                     "of [joints]",
+                                     "of [joints]",
+                                     "of [joints]; else friction"};
+constexpr JointDefaults map_defaults{JointsOf::map,
+                                     false,
+                                     "of [joints]",
+                                     "of [joints]",
+                                     "of [joints]",
+                                     "of [joints]",
+                                     "of [joints]; else friction"};
 
 void read_set_keys(TableReader& t, JointKeys& joints) {
   t.number("strength_factor", joints.strength_factor,
@@ -191,6 +302,13 @@ void check_joint_keys(TableReader& t, const JointKeys& own, const JointKeys& sta
   if (own.shear_stiffness && !own.normal_stiffness && !standard.normal_stiffness) {
     t.fail("shear_stiffness", "a shear stiffness without a normal stiffness", "normal_stiffness as well");
   }
+}
+
+void read_keys_of(TableReader& t, JointKeys& joints, const JointDefaults& defaults,
+                  const JointKeys& standard) {
+  read_joint_keys(t, joints, defaults);
+  read_set_keys(t, joints);
+  check_joint_keys(t, joints, standard);
 }
 
 void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standard) {
@@ -233,7 +351,7 @@ void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standar
   read_distribution(t, "gap", set.gap, true, "Rock bridge between two traces on one line; 0: none.");
   t.boolean("gap_bonds", spec.gap_bonds,
             {.meaning = "The gaps are joints as well, with the strength of [rock_bridge]."});
-  read_joint_keys_of(t, spec.joints, standard);
+  read_keys_of(t, spec.joints, set_defaults, standard);
 }
 
 void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard) {
@@ -267,15 +385,15 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
           .required = !t.documenting() && !given.empty() && !has_file,
           .fallback = "that of the file"});
   if (map.name.empty()) map.name = map.file.stem().string();
-  read_joint_keys_of(t, map.joints, standard);
+  read_keys_of(t, map.joints, map_defaults, standard);
 }
 
 }  // namespace
 
 void read_joint_keys_of(TableReader& t, JointKeys& joints, const JointKeys& standard) {
-  read_joint_keys(t, joints, set_defaults);
-  read_set_keys(t, joints);
-  check_joint_keys(t, joints, standard);
+  JointDefaults defaults = set_defaults;
+  defaults.of = JointsOf::numbers;  // without traces there is nothing to draw for
+  read_keys_of(t, joints, defaults, standard);
 }
 
 void read_joints(TableReader& root, Scenario& scenario) {

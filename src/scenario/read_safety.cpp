@@ -14,7 +14,7 @@ namespace {
 using record::Stage;
 using record::StageKind;
 
-constexpr const char* name_of_reduced = "strength reduced";
+constexpr const char *name_of_reduced = "strength reduced", *name_of_pushed = "seismic coefficient";
 /// s; what falls out of an opening has come down by then, and what it held has begun to.
 constexpr double longest_motion = 3.0;
 
@@ -22,7 +22,7 @@ constexpr double longest_motion = 3.0;
 /// and that props the rock behind it.
 Stage stage_of_reduced_strength(const SafetySpec& safety, const Stage& before) {
   Stage stage;
-  stage.strength_factor = *safety.strength_factor;
+  stage.strength_factor = safety.strength_factor.value_or(1.0);
   stage.strength_of = safety.sets;
   if (safety.area > 0.0) {
     stage.kind = StageKind::rest;
@@ -31,7 +31,7 @@ Stage stage_of_reduced_strength(const SafetySpec& safety, const Stage& before) {
     return stage;
   }
   stage.tolerance = before.tolerance;
-  stage.k_h = before.k_h;
+  stage.k_h = safety.k_h.value_or(before.k_h);
   stage.k_v = before.k_v;
   stage.max_steps = safety.max_steps;
   return stage;
@@ -56,6 +56,12 @@ void read_keys_of_safety(TableReader& t, SafetySpec& safety, const Scenario& sce
        .above = 0.0,
        .fallback = "the run is as without [safety]",
        .usual = &usual::strength_factor});
+  t.number("k_h", safety.k_h,
+           {.meaning = "Horizontal seismic coefficient of that stage: the share of its weight that pushes "
+                       "each block to the right. "
+                       "`keyblock safety --yield` looks for the value at which rock moves.",
+            .fallback = "`k_h` of the stage before",
+            .usual = &usual::coefficient});
   t.number(
       "moved", safety.moved,
       {.meaning =
@@ -91,14 +97,13 @@ void read_joint_names(TableReader& t, std::string_view key, std::vector<std::str
 static void check_area(TableReader& root, const Scenario& scenario) {
   const SafetySpec& safety = *scenario.safety;
   const auto stage = std::ranges::find(scenario.stages, safety.stage, &Stage::name);
-  if (safety.area == 0.0 || stage == scenario.stages.end() || (stage->k_h == 0.0 && stage->k_v == 0.0))
-    return;
+  const double k_h = safety.k_h.value_or(stage == scenario.stages.end() ? 0.0 : stage->k_h);
+  if (safety.area == 0.0 || stage == scenario.stages.end() || (k_h == 0.0 && stage->k_v == 0.0)) return;
   ReadContext& context = root.context();
-  context.mistakes.add({context.where("safety.area"), "safety.area",
-                        fmt::format("an area, with k_h = {} and k_v = {} of the stage '{}'", stage->k_h,
-                                    stage->k_v, stage->name),
-                        "0: with an area strength is reduced in motion, where no seismic coefficient acts",
-                        ""});
+  context.mistakes.add(
+      {context.where("safety.area"), "safety.area",
+       fmt::format("an area, with k_h = {} and k_v = {} of the stage '{}'", k_h, stage->k_v, stage->name),
+       "0: with an area strength is reduced in motion, where no seismic coefficient acts", ""});
 }
 
 void read_safety(TableReader& root, Scenario& scenario) {
@@ -121,13 +126,13 @@ void read_safety(TableReader& root, Scenario& scenario) {
 }
 
 void end_with_reduced_strength(Scenario& scenario) {
-  if (!scenario.safety || !scenario.safety->strength_factor) return;
+  if (!scenario.safety || (!scenario.safety->strength_factor && !scenario.safety->k_h)) return;
   const SafetySpec& safety = *scenario.safety;
   std::vector<Stage>& stages = scenario.stages;
   const auto last = std::ranges::find(stages, safety.stage, &Stage::name);
   if (last == stages.end()) return;
   Stage reduced = stage_of_reduced_strength(safety, *last);
-  reduced.name = name_of_reduced;
+  reduced.name = safety.strength_factor ? name_of_reduced : name_of_pushed;
   while (std::ranges::find(stages, reduced.name, &Stage::name) != stages.end()) reduced.name += " again";
   scenario.left_out.assign(std::next(last), stages.end());
   stages.erase(std::next(last), stages.end());

@@ -11,6 +11,8 @@ namespace {
 constexpr Word<Keep> keep_words[] = {
     {"all", Keep::all}, {"report", Keep::report}, {"measures", Keep::measures}};
 
+constexpr Word<bool> samplings[] = {{"independent", false}, {"latin_hypercube", true}};
+
 constexpr KeyKind key_list[] = {KeyKind::references}, value_list[] = {KeyKind::list};
 
 // `key`, or `keys` that vary together.
@@ -148,6 +150,14 @@ void read_keys_of_study(TableReader& t, StudySpec& study) {
   Rule rule{.meaning = "Number of realizations of the joint sets.", .at_least = 1.0, .applies = !until};
   rule.condition = until ? "`until` left out" : "";
   t.integer("realizations", study.realizations, rule);
+  Rule sampling{.meaning =
+                    "How strengths with `per = \"realization\"` are drawn: `latin_hypercube`, one "
+                    "realization in each part of "
+                    "equal probability, of as many parts as there are realizations; or each by itself.",
+                .applies = !until};
+  sampling.condition =
+      until ? "`until` left out, as it needs a number of realizations that is known before" : "";
+  t.word("sampling", study.latin_hypercube, samplings, sampling);
   t.tables("vary", study.vary, {.meaning = "One axis of the grid; all combinations are run."},
            [](TableReader& v, VarySpec& vary) { read_vary(v, vary); });
   t.reference("stage", study.stage, "stage",
@@ -201,6 +211,7 @@ void read_study(TableReader& root, Scenario& scenario) {
              {.meaning = "A Monte Carlo study for `keyblock study`: realizations × a grid of values "
                          "([guide](studies.md))."},
              [&](TableReader& t) { read_keys_of_study(t, scenario.study.emplace()); });
+  if (scenario.study && scenario.study->latin_hypercube) scenario.strata = scenario.study->realizations;
 }
 
 }  // namespace keyblock::scenario

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -15,6 +16,7 @@
 #include "model/options.h"
 #include "record/stage.h"
 #include "rockmass/joint_set.h"
+#include "rockmass/random_strength.h"
 #include "scenario/study_spec.h"
 #include "scenario/usual.h"
 #include "simulation/boundary.h"
@@ -39,10 +41,19 @@ struct JointKeys {
   std::optional<double> residual_friction, residual_cohesion, weakening_slip;
   std::optional<double> strength_factor;  ///< tan(friction), cohesion and tension are divided by it
   bool dry = false;                       ///< of joints of their own: they hold no water
+  /// Of a set or trace map, by StrengthKey: strengths that are drawn. friction, cohesion … have their means.
+  std::array<std::optional<rockmass::RandomStrength>, rockmass::strength_count> random{};
+  double change_of_mapped_friction =
+      0.0;  ///< °, in a variant of a study, of traces whose map has their friction
 
   /// Whether strength falls from a peak to what is left.
   [[nodiscard]] bool has_residual() const { return residual_friction || residual_cohesion || weakening_slip; }
 };
+
+/// By StrengthKey.
+inline constexpr std::array<std::optional<double> JointKeys::*, rockmass::strength_count> strength_members{
+    &JointKeys::friction, &JointKeys::cohesion, &JointKeys::tension, &JointKeys::residual_friction,
+    &JointKeys::residual_cohesion};
 
 struct Domain {
   std::pair<double, double> x, y;
@@ -175,7 +186,9 @@ struct SafetySpec {
   std::string stage;              ///< after which; later ones are left out
   std::vector<std::string> sets;  ///< whose strength it is: sets, maps, `joints`; empty: all
   std::optional<double>
-      strength_factor;  ///< what strength is divided by; none: the run is as without [safety]
+      strength_factor;  ///< what strength is divided by; neither it nor k_h: the run is as without [safety]
+  std::optional<double>
+      k_h;  ///< horizontal seismic coefficient of the last stage; none: that of the stage before
   std::optional<double>
       moved;          ///< m in the stage, beyond which rock has moved; none: a share of the block size
   double area = 0.0;  ///< m², that may move; 0: nothing may
@@ -229,6 +242,7 @@ struct Scenario {
   bool si_units = true;  ///< values may be compared with what is usual
   AcceptedWarnings accepted;
   std::uint64_t seed = 1;
+  int strata = 0;  ///< rockmass::Sampling: realizations of a Latin hypercube; 0: they are independent
   Vec2 gravity{0.0, -9.81};  ///< m/s², turned by the tilt of the model
   double tilt = 0.0;         ///< degrees
   std::optional<double> section_azimuth;

@@ -9,6 +9,12 @@
 /// the reference alike.
 namespace keyblock::scenario {
 
+/// `per` of a strength that is drawn.
+inline constexpr Word<rockmass::DrawnPer> drawn_per_words[] = {
+    {"joint", rockmass::DrawnPer::joint},
+    {"line", rockmass::DrawnPer::line},
+    {"realization", rockmass::DrawnPer::realization}};
+
 /// A rule of a key that has a place under a condition alone.
 inline Rule only(bool applies, std::string_view condition, Rule rule) {
   rule.applies = applies;

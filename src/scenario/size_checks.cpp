@@ -81,6 +81,14 @@ int side_of_slope(const RunSetup& setup, const std::vector<bool>& is_out) {
   return *left > *right ? 1 : -1;
 }
 
+/// Blocks that a stage excavates.
+void take_out(const RunSetup& setup, const Stage& stage, std::vector<bool>& is_out) {
+  for (std::size_t b = 0; b < is_out.size(); ++b) {
+    const std::vector<int>& excavations = setup.system.blocks[b].excavations;
+    is_out[b] = is_out[b] || std::ranges::find_first_of(excavations, stage.excavate) != excavations.end();
+  }
+}
+
 void warn_of_push(const Scenario& scenario, const std::string& key, double push, int slope, double value,
                   std::vector<std::string>& warnings) {
   if (push * slope >= 0.0) return;
@@ -95,10 +103,7 @@ void warn_of_direction(const Scenario& scenario, const RunSetup& setup, std::vec
   std::vector<bool> is_out(setup.system.blocks.size(), false);
   int slope = 0;
   for (const Stage& stage : setup.stages) {
-    for (std::size_t b = 0; b < is_out.size(); ++b)
-      is_out[b] =
-          is_out[b] || std::ranges::find_first_of(setup.system.blocks[b].excavations, stage.excavate) !=
-                           setup.system.blocks[b].excavations.end();
+    take_out(setup, stage, is_out);
     slope = side_of_slope(setup, is_out);
     warn_of_push(scenario, join_path(join_path("stage", stage.name), "k_h"), stage.k_h, slope, stage.k_h,
                  warnings);
@@ -107,6 +112,12 @@ void warn_of_direction(const Scenario& scenario, const RunSetup& setup, std::vec
 }
 
 }  // namespace
+
+int side_of_slope(const simulation::RunSetup& setup) {
+  std::vector<bool> is_out(setup.system.blocks.size(), false);
+  for (const Stage& stage : setup.stages) take_out(setup, stage, is_out);
+  return side_of_slope(setup, is_out);
+}
 
 void add_size_warnings(const Scenario& scenario, const RunSetup& setup, std::vector<std::string>& warnings) {
   if (scenario.si_units) warn_of_damage(scenario, setup, warnings);

@@ -42,6 +42,7 @@ inline constexpr const char* from_the_start = "start";
 
 struct StudySpec {
   int realizations = 1;
+  bool latin_hypercube = false;  ///< of what is drawn once in each realization
   std::vector<VarySpec> vary;
   std::string stage;  ///< at whose end measures are compared; empty: the last
   /// An earlier stage, at whose end they begin, or from_the_start; empty: the last one before the shaking.

@@ -56,8 +56,8 @@ std::vector<std::uint8_t> dry_faces(const RunSetup& setup, const Model& model, c
   std::vector<std::uint8_t> dry;
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const std::size_t v = at(faces[f].vertex);
-    const bool is_dry = laws[f] >= first_set_law
-                            ? water.dry_joints[at(laws[f] - first_set_law)]
+    const std::optional<std::size_t> set = set_of_law(setup, at(laws[f]));
+    const bool is_dry = set ? water.dry_joints[*set]
                             : cut.has(model.reference[v], model.reference[at(model.surface.next[v])]);
     dry.push_back(is_dry ? 1 : 0);
   }
@@ -210,7 +210,7 @@ std::optional<record::WaterRecord> water_record(const Model& model, const dynami
   dynamics::WaterTotals totals = water.water->totals(model, state, water.memory);
   if (!totals.acts) return std::nullopt;
   return record::WaterRecord{std::move(totals.name), totals.largest_pressure, totals.wet, totals.drained,
-                     std::move(totals.forces)};
+                             std::move(totals.forces)};
 }
 
 int water_in(const RunSetup& setup, std::size_t k) {

@@ -24,22 +24,22 @@ void check_factor(const char* key, double value) {
 }  // namespace
 
 std::optional<contact::JointLaw> Control::law(std::string_view name) const {
-  const std::optional<std::size_t> number = find_law(setup_, name);
-  return number ? std::optional(given_laws(setup_, memory_)[*number]) : std::nullopt;
+  const std::vector<std::size_t> numbers = find_laws(setup_, name);
+  return numbers.empty() ? std::nullopt : std::optional(given_laws(setup_, memory_)[numbers.front()]);
 }
 
 void Control::set_strength(std::string_view name, const Strength& strength) {
-  const std::optional<std::size_t> number = find_law(setup_, name);
-  if (!number)
+  const std::vector<std::size_t> numbers = find_laws(setup_, name);
+  if (numbers.empty())
     refuse("law", "\"" + std::string(name) + "\"",
            "the name of a joint set or of a trace map, \"joints\" or \"frame\"");
   check_strength("friction", strength.friction_coefficient);
   check_strength("cohesion", strength.cohesion);
   check_strength("tension", strength.tension);
   std::vector<contact::JointLaw> laws = given_laws(setup_, memory_);
-  const contact::JointLaw before = laws[*number];
-  put_strength(strength, laws[*number]);
-  if (laws[*number] == before) return;
+  const std::vector<contact::JointLaw> before = laws;
+  for (const std::size_t number : numbers) put_strength(strength, laws[number]);
+  if (laws == before) return;
   memory_.strengths.clear();
   for (const contact::JointLaw& law : laws)
     memory_.strengths.push_back({law.friction_coefficient, law.cohesion, law.tension});

@@ -47,23 +47,47 @@ int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
     case cutting::EdgeKind::excavation:
       return static_cast<int>(of_outlines);
     case cutting::EdgeKind::joint_set:
-      return law_of_set(label);
     case cutting::EdgeKind::trace_map:
-      return first_set_law + sets + std::min<int>(label.index, maps - 1);
+      break;
   }
-  return static_cast<int>(of_joints);
+  if (const int place = setup.joints.place_of_trace(label); place >= 0)
+    return first_set_law + sets + maps + place;
+  return label.kind == cutting::EdgeKind::joint_set
+             ? law_of_set(label)
+             : first_set_law + sets + std::min<int>(label.index, maps - 1);
 }
 
-std::optional<std::size_t> find_law(const RunSetup& setup, std::string_view name) {
-  if (name == "joints") return of_joints;
-  if (name == "frame") return of_frame;
-  std::size_t number = first_set_law;
+int JointTable::place_of_trace(cutting::EdgeLabel label) const {
+  const bool is_map = label.kind == cutting::EdgeKind::trace_map;
+  if (label.trace < 0 || (!is_map && label.kind != cutting::EdgeKind::joint_set)) return -1;
+  const std::vector<std::vector<int>>& traces = is_map ? trace_map_traces : joint_set_traces;
+  const auto index = static_cast<std::size_t>(label.index), trace = static_cast<std::size_t>(label.trace);
+  return index < traces.size() && trace < traces[index].size() ? traces[index][trace] : -1;
+}
+
+std::optional<std::size_t> set_of_law(const RunSetup& setup, std::size_t law) {
+  const std::size_t sets = setup.joints.joint_sets.size(), all = sets + setup.joints.trace_maps.size();
+  if (law < first_set_law) return std::nullopt;
+  if (law < first_set_law + all) return law - first_set_law;
+  const cutting::EdgeLabel label = setup.joints.of_traces.at(law - first_set_law - all).label;
+  return static_cast<std::size_t>(label.index) + (label.kind == cutting::EdgeKind::trace_map ? sets : 0);
+}
+
+std::vector<std::size_t> find_laws(const RunSetup& setup, std::string_view name) {
+  if (name == "joints") return {of_joints};
+  if (name == "frame") return {of_frame};
+  std::size_t set = 0;
   for (const auto* names : {&setup.joint_set_names, &setup.trace_map_names}) {
     const auto found = std::ranges::find(*names, name);
-    if (found != names->end()) return number + static_cast<std::size_t>(found - names->begin());
-    number += names->size();
+    set += static_cast<std::size_t>(found - names->begin());
+    if (found == names->end()) continue;
+    std::vector<std::size_t> laws{first_set_law + set};
+    const std::size_t first = first_set_law + setup.joints.joint_sets.size() + setup.joints.trace_maps.size();
+    for (std::size_t k = 0; k < setup.joints.of_traces.size(); ++k)
+      if (set_of_law(setup, first + k) == set) laws.push_back(first + k);
+    return laws;
   }
-  return std::nullopt;
+  return {};
 }
 
 std::vector<contact::JointLaw> joint_laws(const RunSetup& setup) {
@@ -72,6 +96,7 @@ std::vector<contact::JointLaw> joint_laws(const RunSetup& setup) {
   laws[of_outlines].fused = true;
   std::ranges::transform(setup.joints.joint_sets, std::back_inserter(laws), law_of);
   std::ranges::transform(setup.joints.trace_maps, std::back_inserter(laws), law_of);
+  for (const JointTable::OfTraces& of : setup.joints.of_traces) laws.push_back(law_of(of.joint));
   return laws;
 }
 
@@ -94,7 +119,7 @@ std::vector<contact::JointLaw> laws_in_stage(const RunSetup& setup, const Contro
                                              const record::Stage& stage) {
   std::vector<contact::JointLaw> laws = given_laws(setup, memory);
   const auto reduce = [&](std::size_t law) { laws[law] = laws[law].divided_by(stage.strength_factor); };
-  for (const std::string& name : stage.strength_of) reduce(find_law(setup, name).value());
+  for (const std::string& name : stage.strength_of) std::ranges::for_each(find_laws(setup, name), reduce);
   if (!stage.strength_of.empty()) return laws;
   for (std::size_t law = 0; law < laws.size(); ++law)
     if (law != of_frame && law != of_outlines) reduce(law);

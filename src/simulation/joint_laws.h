@@ -9,8 +9,8 @@
 #include "simulation/control.h"
 #include "simulation/setup.h"
 
-/// Which law a joint has. Their numbers: 0 `joints`, 1 the frame, 2 outlines of excavations before they are opened, then joint sets, interfaces and trace
-/// maps.
+/// Which law a joint has. Their numbers: 0 `joints`, 1 the frame, 2 outlines of excavations before they are opened, then joint sets with rock bridges and
+/// interfaces, then trace maps, then traces that have strengths of their own (JointTable::of_traces).
 namespace keyblock::simulation {
 
 /// Number of the law of the first joint set; those of the others follow, then those of trace maps.
@@ -20,8 +20,11 @@ inline constexpr int first_set_law = 3;
 int law_of_set(cutting::EdgeLabel label);
 /// Number of the law of an edge (Surface::joint).
 int joint_law(const RunSetup& setup, cutting::EdgeLabel label);
-/// Number of the law of a joint set, an interface, a trace map, `joints` or `frame`; none: there is no such name.
-std::optional<std::size_t> find_law(const RunSetup& setup, std::string_view name);
+/// Numbers of the laws of a joint set, an interface, a trace map, `joints` or `frame`: that of the whole first, then those of its traces. Empty: there
+/// is no such name.
+std::vector<std::size_t> find_laws(const RunSetup& setup, std::string_view name);
+/// Which set (from 0 on, then maps) a law is of; none: of no set or map.
+std::optional<std::size_t> set_of_law(const RunSetup& setup, std::size_t law);
 
 /// All laws, as the setup has them.
 std::vector<contact::JointLaw> joint_laws(const RunSetup& setup);

@@ -18,6 +18,7 @@
 #include "simulation/damping_table.h"
 #include "simulation/elements.h"
 #include "simulation/history_block.h"
+#include "simulation/joint_records.h"
 
 namespace keyblock::simulation {
 
@@ -178,6 +179,8 @@ record::ModelRecord Recorder::model() const {
   for (const record::Stage& stage : setup_.stages) record.stage_names.push_back(stage.name);
   record.joint_set_names = setup_.joint_set_names;
   record.trace_map_names = setup_.trace_map_names;
+  record.joints = joint_records(setup_);
+  record.strengths = setup_.joints.drawn;
   for (const Excavation& excavation : setup_.excavations) {
     record.excavation_names.push_back(excavation.name);
     record.excavation_outlines.push_back(excavation.outline);

@@ -128,6 +128,8 @@ std::vector<JointPiece> joint_pieces(const RunSetup& setup) {
 
 const contact::JointProperties& joint_of(const JointTable& joints, cutting::EdgeLabel label) {
   const auto index = static_cast<std::size_t>(label.index);
+  if (const int place = joints.place_of_trace(label); place >= 0)
+    return joints.of_traces[static_cast<std::size_t>(place)].joint;
   if (label.kind == cutting::EdgeKind::joint_set) return joints.joint_sets[index];
   return label.kind == cutting::EdgeKind::trace_map ? joints.trace_maps[index] : joints.standard;
 }

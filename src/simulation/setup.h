@@ -12,6 +12,7 @@
 #include "loading/load.h"
 #include "loading/water_table.h"
 #include "model/options.h"
+#include "record/joint_records.h"
 #include "record/stage.h"
 #include "simulation/boundary.h"
 
@@ -36,6 +37,19 @@ struct JointTable {
   std::vector<contact::JointProperties> joint_sets;  ///< then of rock bridges, if there are any, and of interfaces
   std::vector<contact::JointProperties> trace_maps;
   contact::JointProperties frame;  ///< between the rock and the frame; frictionless unless given
+
+  /// Joints of traces that have a strength of their own.
+  struct OfTraces {
+    cutting::EdgeLabel label;  ///< of which set or map
+    contact::JointProperties joint;
+  };
+  std::vector<OfTraces> of_traces;  ///< those that differ, by set, then by map
+  /// By set or map, of each trace: its place in of_traces; −1: it has the strength of its set or map. Empty where all traces have that.
+  std::vector<std::vector<int>> joint_set_traces, trace_map_traces;
+  std::vector<record::DrawnStrength> drawn;
+
+  /// Place in of_traces of the joint that an edge is a piece of; −1: it has none.
+  [[nodiscard]] int place_of_trace(cutting::EdgeLabel label) const;
 };
 
 /// A pressure that holds the wall of an opening.

@@ -10,11 +10,15 @@ constexpr double narrowest = 1e-6;  // of the whole: where the limit is zero, no
 
 }  // namespace
 
-Bisection::Bisection(double from, double to, double tolerance, int scan)
-    : from_(from), to_(to), tolerance_(tolerance) {
+Bisection::Bisection(double from, double to, double tolerance, int scan, std::optional<double> also)
+    : from_(from), to_(to), tolerance_(tolerance), scans_(scan > 1) {
   scan_.push_back(from);
   for (int k = 1; k < scan; ++k) scan_.push_back(from + (to - from) * k / scan);
   scan_.push_back(to);
+  if (also && (*also - from) * (to - *also) > 0.0 && std::ranges::find(scan_, *also) == scan_.end())
+    scan_.insert(
+        std::ranges::find_if(scan_, [&](double value) { return (value - *also) * (to - from) > 0.0; }),
+        *also);
   in_order_ = {from, to};
   in_order_.insert(in_order_.end(), scan_.begin() + 1, scan_.end() - 1);
 }
@@ -32,7 +36,7 @@ std::vector<Bisection::Bracket> Bisection::crossings(const Known& known) const {
     all.push_back(before ? Bracket{scan_[k + 1], scan_[k]} : Bracket{scan_[k], scan_[k + 1]});
   }
   // Ends the wrong way round are a slip, unless it was asked what is between them.
-  if (scan_.size() == 2 && *known(from_)) all.clear();
+  if (!scans_ && *known(from_)) all.clear();
   return all;
 }
 

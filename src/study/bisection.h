@@ -47,7 +47,8 @@ class Bisection {
   };
 
   /// A bracket is narrow enough when it is at most `tolerance` times the larger of its ends, or a millionth of the whole.
-  Bisection(double from, double to, double tolerance, int scan = 1);
+  /// `also`, between the ends, is tried with them: no bracket holds it.
+  Bisection(double from, double to, double tolerance, int scan = 1, std::optional<double> also = {});
 
   /// As far as what is known leads.
   [[nodiscard]] State follow(const Known& known) const;
@@ -64,6 +65,7 @@ class Bisection {
   std::optional<double> narrow(Bracket& bracket, const Known& known, std::vector<double>& path) const;
 
   double from_, to_, tolerance_;
+  bool scans_;
   std::vector<double> scan_;      ///< from `from` to `to`
   std::vector<double> in_order_;  ///< the same, both ends first
 };

@@ -204,7 +204,9 @@ void write_plan(const fs::path& directory, const Plan& plan) {
 }
 
 std::string run_input(const Plan& plan) {
-  return plan.input + "-" + plan.version;
+  // What is drawn hangs on the number of realizations where it is stratified over them.
+  const std::string strata = plan.strata > 0 ? fmt::format("-{}", plan.strata) : "";
+  return plan.input + strata + "-" + plan.version;
 }
 
 RunResult empty_result(const PlannedRun& run) {

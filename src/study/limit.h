@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +15,8 @@ namespace keyblock::study {
 
 /// The key of the factor of safety.
 inline constexpr const char* safety_key = "safety.strength_factor";
+/// That of the yield coefficient.
+inline constexpr const char* yield_key = "safety.k_h";
 
 struct LimitRequest {
   std::string key;  ///< key path of a number
@@ -24,8 +27,14 @@ struct LimitRequest {
   int realizations = 1;
   int scan = 0;               ///< parts of the way that are looked at before the bisection; 0: by the key
   bool finds_moving = false;  ///< from where on blocks move before the criterion holds is looked for, too
-  bool has_rest = false;      ///< a rest until all is still follows the last stage (needs_rest)
-  std::string of = {};        ///< of the factor of safety: of which joints it is; empty: of all
+  /// Of the factor of safety over realizations: 1, so that each is known to be below or above it.
+  [[nodiscard]] std::optional<double> decided_value() const {
+    const bool is_within = std::min(from, to) <= 1.0 && std::max(from, to) >= 1.0;
+    return key == safety_key && realizations > 1 && is_within ? std::optional(1.0) : std::nullopt;
+  }
+  [[nodiscard]] bool is_of_safety() const { return key == safety_key || key == yield_key; }
+  bool has_rest = false;  ///< a rest until all is still follows the last stage (needs_rest)
+  std::string of = {};    ///< of the factor of safety: of which joints it is; empty: of all
 };
 
 /// Parts of the way of a key that need not be monotone: the scale of a motion, and what a motion is made of. 1 for others.
@@ -73,6 +82,7 @@ struct RealizationLimit {
   /// Of a criterion with two ends: the trial from which on blocks do not stand. None: they stand in all of them.
   std::optional<LimitTrial> falls = {};
   double stands_to = 0.0;  ///< value of the trial next to it, in which they stand
+  std::vector<std::pair<std::string, double>> strengths = {};  ///< that were drawn: RunResult::strengths
 
   [[nodiscard]] const LimitTrial* trial_at(double value) const;
   [[nodiscard]] bool found() const { return error.empty() && state.status == Bisection::Status::found; }

@@ -1,10 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/checked_json.h"
 #include "record/standing.h"
+#include "results/csv.h"
 #include "results/json_parts.h"
+#include "study/limit_statistics.h"
 #include "study/limit_words.h"
 
 namespace keyblock::study {
@@ -67,7 +71,8 @@ ordered_json falls_json(const RealizationLimit& limit) {
 }
 
 ordered_json realization_json(const RealizationLimit& limit) {
-  ordered_json trials = ordered_json::array(), bracket, beyond, error;
+  ordered_json trials = ordered_json::array(), strengths = ordered_json::object(), bracket, beyond, error;
+  for (const auto& [name, value] : limit.strengths) strengths[name] = results::number_or_null(value);
   for (const LimitTrial& trial : limit.trials) trials.push_back(trial_json(trial));
   if (limit.is_bracketed()) bracket = {{"not_met", limit.state.not_met}, {"met", limit.state.met}};
   if (const LimitTrial* trial = limit.just_beyond()) beyond = "runs/" + trial->run;
@@ -81,7 +86,44 @@ ordered_json realization_json(const RealizationLimit& limit) {
           {"limits", limits_json(limit)},
           {"moves_already", limit.moves ? trial_json(*limit.moves) : ordered_json()},
           {"error", error},
+          {"strengths", strengths},
           {"trials", trials}};
+}
+
+ordered_json estimate_json(const statistics::Estimate& estimate) {
+  return {{"value", results::number_or_null(estimate.value)},
+          {"low", results::number_or_null(estimate.low)},
+          {"high", results::number_or_null(estimate.high)}};
+}
+
+ordered_json mean_json(const LimitResult& result) {
+  const LimitMean mean = mean_limit(result);
+  LimitQuantile bound;
+  bound.at_least = mean.at_least;
+  bound.at_most = mean.at_most;
+  ordered_json json{{"n", mean.n}};
+  json.update(estimate_json(mean.mean));
+  json["bound"] = bound_json(bound);
+  json["standard_deviation"] = results::number_or_null(mean.standard_deviation);
+  return json;
+}
+
+/// null where it is not asked for.
+ordered_json failure_json(const LimitResult& result) {
+  const std::optional<FailureShare> failure = failure_share(result);
+  if (!failure) return {};
+  ordered_json json{{"n", failure->n}, {"below", failure->below}};
+  json.update(estimate_json(failure->share));
+  return json;
+}
+
+ordered_json dependences_json(const LimitResult& result) {
+  ordered_json rows = ordered_json::array();
+  for (const Dependence& one : dependences(result))
+    rows.push_back({{"strength", one.strength},
+                    {"rank_correlation", estimate_json(one.rank_correlation)},
+                    {"first_order_index", estimate_json(one.first_order)}});
+  return rows;
 }
 
 /// Columns.
@@ -99,16 +141,24 @@ ordered_json shares_json(const LimitResult& result) {
 }  // namespace
 
 std::string limit_csv(const LimitResult& result) {
-  std::string text = "realization,status,not_met,met,limit,runs,just_beyond\n";
+  std::string text = "realization,status,not_met,met,limit,runs,just_beyond";
+  const auto first = std::ranges::find_if(
+      result.realizations, [](const RealizationLimit& limit) { return !limit.strengths.empty(); });
+  const auto known = first == result.realizations.end() ? RealizationLimit{}.strengths : first->strengths;
+  for (const auto& [name, value] : known) text += "," + results::csv_field(name);
+  text += "\n";
   for (const RealizationLimit& limit : result.realizations) {
     text += fmt::format("{},{},", limit.realization, status_word(limit));
     const LimitTrial* beyond = limit.just_beyond();
     if (beyond != nullptr) {
-      text += fmt::format("{},{},{},{},runs/{}\n", limit.state.not_met, limit.state.met, limit.limit(),
+      text += fmt::format("{},{},{},{},runs/{}", limit.state.not_met, limit.state.met, limit.limit(),
                           limit.trials.size(), beyond->run);
     } else {
-      text += fmt::format(",,,{},\n", limit.trials.size());
+      text += fmt::format(",,,{},", limit.trials.size());
     }
+    for (std::size_t k = 0; k < known.size(); ++k)
+      text += k < limit.strengths.size() ? fmt::format(",{}", limit.strengths[k].second) : ",";
+    text += "\n";
   }
   return text;
 }
@@ -157,7 +207,10 @@ std::string limit_json(const LimitResult& result) {
                             {"bound", bound_json(median)},
                             {"confidence", result.confidence},
                             {"interval", interval}}},
+                          {"mean", mean_json(result)},
                           {"quantiles", quantiles},
+                          {"probability_below_1", failure_json(result)},
+                          {"hangs_on", dependences_json(result)},
                           {"ground", results::ground_json(result.ground)},
                           {"warnings", result.warnings},
                           {"met_share", shares_json(result)},

@@ -11,6 +11,7 @@
 #include "core/read_file.h"
 #include "core/xml_text.h"
 #include "study/limit_search.h"
+#include "study/limit_statistics.h"
 #include "study/limit_words.h"
 #include "study/measures.h"
 
@@ -261,6 +262,48 @@ class SharePlot {
   Scale x_, y_;
 };
 
+std::string estimate_cells(const statistics::Estimate& estimate) {
+  std::string cells;
+  for (const double number : {estimate.value, estimate.low, estimate.high})
+    cells += std::isfinite(number) ? fmt::format("<td>{:.4g}</td>", number) : "<td>not known</td>";
+  return cells;
+}
+
+/// Mean, deviation and, of the factor of safety, the probability that it is below 1; what they hang on.
+std::string statistics_section(const LimitResult& result) {
+  if (result.realizations.size() < 2) return {};
+  const LimitMean mean = mean_limit(result);
+  const std::string bound = mean.at_least == mean.at_most ? (mean.at_least ? ", a bound" : "")
+                            : mean.at_least               ? ", at least"
+                                                          : ", at most";
+  std::string rows =
+      fmt::format("<tr><td class=\"name\">mean{}</td>{}</tr>", bound, estimate_cells(mean.mean));
+  rows += fmt::format("<tr><td class=\"name\">standard deviation</td><td>{:.4g}</td><td></td><td></td></tr>",
+                      mean.standard_deviation);
+  if (const auto failure = failure_share(result))
+    rows += fmt::format("<tr><td class=\"name\">probability that it is below 1 ({} of {})</td>{}</tr>",
+                        failure->below, failure->n, estimate_cells(failure->share));
+  const std::string head =
+      fmt::format("<th>value</th><th>{:.0f} % interval from</th><th>to</th>", 100.0 * result.confidence);
+  std::string html = fmt::format(
+      "<section><h2>All realizations together</h2><table><tr><th></th>{}</tr>{}</table>", head, rows);
+  std::string of_strengths;
+  for (const Dependence& one : dependences(result))
+    of_strengths +=
+        fmt::format("<tr><td class=\"name\">{}</td>{}{}</tr>", xml_text(strength_title(one.strength)),
+                    estimate_cells(one.rank_correlation), estimate_cells(one.first_order));
+  if (!of_strengths.empty())
+    html += fmt::format(
+        "<h2>What it hangs on</h2><table><tr><th></th><th>rank correlation</th><th>from</th><th>to</th>"
+        "<th>first-order index</th><th>from</th><th>to</th></tr>{}</table><p>Rank correlation (Spearman): −1 "
+        "to 1. "
+        "First-order index: the share of the variance of the limit that this strength alone explains. Of "
+        "strengths that differ from "
+        "trace to trace, their mean in each realization.</p>",
+        of_strengths);
+  return html + "<p><a href=\"statistics.csv\">statistics.csv</a></p></section>";
+}
+
 // Link to the report of a run, where it was kept.
 std::string link_to(const fs::path& directory, const LimitTrial& trial, const std::string& text) {
   std::error_code none;
@@ -332,7 +375,7 @@ std::string warning_list(const LimitResult& result) {
 
 /// Of the factor of safety, how much rock moves at which factor, if that is not the criterion.
 std::string moving_area(const LimitResult& result) {
-  if (result.request.key != safety_key || result.request.criterion.measure == "moving_area_m2") return {};
+  if (!result.request.is_of_safety() || result.request.criterion.measure == "moving_area_m2") return {};
   return "<section>" + Plot(result, Curve::of_moving_area()).draw() + "</section>";
 }
 
@@ -359,8 +402,8 @@ std::string limit_page(const fs::path& directory, const LimitResult& result, con
       xml_text(result.request.key), words(result),
       Plot(result, Curve::of_criterion(result.request.criterion)).draw(), drawings(directory, result),
       trial_table(directory, result), xml_text(result.version), xml_text(result.scenario), result.seed,
-      SharePlot(result).draw(), ground_table(result), warning_list(result), moving_area(result),
-      map_section(result, map));
+      SharePlot(result).draw() + statistics_section(result), ground_table(result), warning_list(result),
+      moving_area(result), map_section(result, map));
 }
 
 }  // namespace keyblock::study

@@ -8,6 +8,7 @@
 #include "record/damage_fields.h"
 #include "scenario/build.h"
 #include "scenario/inputs.h"
+#include "scenario/joint_table.h"
 #include "scenario/key_path.h"
 #include "scenario/parse.h"
 #include "study/limit_search.h"
@@ -78,22 +79,27 @@ void check_measure(const LimitRequest& request, const scenario::Scenario& scenar
 }
 
 /// Of the factor of safety: nothing may give way, or no more than an area.
-LimitCriterion criterion_of_safety(const scenario::SafetySpec& safety) {
+LimitCriterion criterion_of_safety(const scenario::SafetySpec& safety, const std::string& key) {
   const bool has_area = safety.area > 0.0;
   LimitCriterion criterion = has_area ? limit_criterion("moving_area_m2", safety.area, 0.0)
                                       : limit_criterion("gives_way", safety.moved, 0.0);
   criterion.why =
-      has_area ? "so much rock may move by [safety] area, in motion, after strength was reduced"
-               : "rock has given way that has moved since strength was reduced, or that does not stand";
+      key == yield_key
+          ? "rock has given way that has moved since the coefficient acts, or that does not stand"
+      : has_area ? "so much rock may move by [safety] area, in motion, after strength was reduced"
+                 : "rock has given way that has moved since strength was reduced, or that does not stand";
   return criterion;
 }
 
 /// Whose strength is reduced, from when on, and what of the scenario does not come.
-std::string what_is_reduced(const scenario::Scenario& scenario) {
+std::string what_is_reduced(const scenario::Scenario& scenario, const std::string& key) {
   const scenario::SafetySpec& safety = scenario.safety.value();
-  std::string text = fmt::format(
-      "strength of {} is reduced from the end of \"{}\" on",
-      safety.sets.empty() ? "all joints" : scenario::list_words(safety.sets, " and "), safety.stage);
+  std::string text =
+      key == yield_key
+          ? fmt::format("a horizontal seismic coefficient acts from the end of \"{}\" on", safety.stage)
+          : fmt::format("strength of {} is reduced from the end of \"{}\" on",
+                        safety.sets.empty() ? "all joints" : scenario::list_words(safety.sets, " and "),
+                        safety.stage);
   std::vector<std::string> names;
   for (const record::Stage& stage : scenario.left_out) names.push_back(stage.name);
   if (!names.empty())
@@ -107,10 +113,10 @@ LimitCriterion chosen_criterion(const scenario::Scenario& scenario, const std::s
                                 const std::string& until, std::optional<double> above) {
   const double loosened = scenario.damage.loosened_distance;
   if (!until.empty()) return limit_criterion(until, above, loosened);
-  if (key == safety_key) {
+  if (key == safety_key || key == yield_key) {
     if (above)
       refuse("--above", fmt::format("{}", *above), "nothing, as [safety] moved and area are the thresholds");
-    return criterion_of_safety(scenario.safety.value());
+    return criterion_of_safety(scenario.safety.value(), key);
   }
   const LimitDefault& row = limit_default(scenario);
   LimitCriterion criterion = limit_criterion(row.criterion, above, loosened);
@@ -134,15 +140,15 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
   const scenario::Scenario read = scenario_at(plan, request, request.from);
   request.criterion = chosen_criterion(read, request.key, until, above);
   check_measure(request, read);
-  if (request.key == safety_key) {
+  if (request.is_of_safety()) {
     request.of = scenario::list_words(read.safety.value().sets, " and ");
-    request.criterion.why += (request.criterion.why.empty() ? "" : "\n") + what_is_reduced(read);
+    request.criterion.why += (request.criterion.why.empty() ? "" : "\n") + what_is_reduced(read, request.key);
   }
   request.has_rest = needs_rest(request.criterion, read);
   request.finds_moving =
       !request.criterion.by_standing && std::string_view(limit_default(read).criterion) != "fallen";
   if (request.scan == 0) request.scan = scan_of(request.key);
-  if (request.realizations > 1 && read.joint_sets.empty())
+  if (request.realizations > 1 && read.joint_sets.empty() && !scenario::has_random_strengths(read))
     warnings.push_back(
         fmt::format("--realizations {}: nothing is random without a [[joint_set]]; all limits are the same, "
                     "and their interval says nothing",
@@ -157,6 +163,7 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
   }
   plan.warnings = std::move(warnings);
   plan.realizations = request.realizations;
+  if (plan.strata > 0) plan.strata = request.realizations;
   plan.axes = {{{request.key}, {}}};
   plan.since.clear();
   plan.before_shaking.clear();

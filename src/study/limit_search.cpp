@@ -13,6 +13,7 @@
 #include "scenario/key_path.h"
 #include "scenario/key_reference.h"
 #include "study/folder.h"
+#include "study/limit_statistics.h"
 #include "study/variant.h"
 
 namespace keyblock::study {
@@ -27,7 +28,8 @@ class Search {
         plan_(std::move(plan)),
         result_(result),
         options_(options),
-        bisection_(result.request.from, result.request.to, result.request.tolerance, result.request.scan) {
+        bisection_(result.request.from, result.request.to, result.request.tolerance, result.request.scan,
+                   result.request.decided_value()) {
     for (PlannedRun& run : plan_.runs) run.wanted = false;
     for (int k = 0; k < result.request.realizations; ++k) result_.realizations.push_back({k, {}, {}, {}});
     told_.resize(result_.realizations.size());
@@ -95,6 +97,8 @@ class Search {
       for (const double value : limit.state.path)
         limit.trials.push_back(
             limit_trial(result_.request, value, state_of(planned(limit.realization, value)).result));
+      if (!limit.trials.empty())
+        limit.strengths = state_of(planned(limit.realization, limit.trials.front().value)).result.strengths;
       for (const LimitTrial& trial : limit.trials)
         if (told_[k].insert(trial.value).second) options_.trial(limit, trial);
       result_.request.criterion.has_two_ends() ? look_for_falling(k) : look_for_moving(k);
@@ -251,6 +255,8 @@ LimitResult find_limit(const fs::path& directory, Plan plan, const LimitRequest&
   result.complete = !interrupted;
   write_file_atomically(limit_path(directory), limit_json(result));
   write_file_atomically(directory / "limits.csv", limit_csv(result));
+  if (result.realizations.size() > 1)
+    write_file_atomically(directory / "statistics.csv", statistics_csv(result));
   const HoldMap map = search.holds();
   if (!map.empty()) write_file_atomically(directory / "map.csv", hold_map_csv(map));
   write_file_atomically(directory / "report.html", limit_page(directory, result, map));

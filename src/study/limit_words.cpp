@@ -8,6 +8,7 @@
 
 #include "record/standing.h"
 #include "scenario/key_path.h"
+#include "study/limit_statistics.h"
 #include "study/measures.h"
 
 namespace keyblock::study {
@@ -26,6 +27,7 @@ struct Subject {
 };
 constexpr Subject subjects[] = {
     {"safety.strength_factor", "the factor of safety"},
+    {"safety.k_h", "the yield coefficient"},
     {"joints.strength_factor", "the factor of safety"},
     {"joint_set._.strength_factor", "the factor of safety of {}"},
     {"trace_map._.strength_factor", "the factor of safety of {}"},
@@ -51,7 +53,7 @@ constexpr Subject subjects[] = {
 
 std::string subject_of(const LimitRequest& request) {
   const std::string& key = request.key;
-  if (!request.of.empty()) return "the factor of safety of " + request.of;
+  if (!request.of.empty() && request.key == safety_key) return "the factor of safety of " + request.of;
   const auto segments = scenario::parse_key_path(key);
   for (const Subject& subject : subjects) {
     const auto pattern = scenario::parse_key_path(subject.key);
@@ -241,6 +243,38 @@ std::string quantiles_text(const LimitResult& result) {
   return text + "\n";
 }
 
+std::string estimate_text(const LimitResult& result, const statistics::Estimate& estimate, int digits) {
+  std::string text = fmt::format("{:.{}g}", estimate.value, digits);
+  if (std::isfinite(estimate.low) && std::isfinite(estimate.high))
+    text += fmt::format(" ({:.0f} % interval {:.{}g} … {:.{}g})", 100.0 * result.confidence, estimate.low,
+                        digits, estimate.high, digits);
+  return text;
+}
+
+/// Mean, share below 1, and on which strengths they hang.
+std::string statistics_text(const LimitResult& result) {
+  const LimitMean mean = mean_limit(result);
+  if (!std::isfinite(mean.mean.value)) return {};
+  const char* bound = mean.at_least == mean.at_most ? (mean.at_least ? "about " : "")
+                      : mean.at_least               ? "at least "
+                                                    : "at most ";
+  std::string text = fmt::format("mean {}{}", bound, estimate_text(result, mean.mean, digits_of_others));
+  if (std::isfinite(mean.standard_deviation))
+    text += fmt::format(", standard deviation {:.{}g}", mean.standard_deviation, least_digits);
+  text += "\n";
+  if (const auto failure = failure_share(result)) {
+    text += fmt::format("probability of a factor below 1: {}, {} of {}",
+                        estimate_text(result, failure->share, least_digits), failure->below, failure->n);
+    text += "\n";
+  }
+  for (const Dependence& one : dependences(result))
+    text += fmt::format(
+        "{}: rank correlation {}, first-order index {}\n", strength_title(one.strength),
+        estimate_text(result, one.rank_correlation, 2),
+        std::isfinite(one.first_order.value) ? estimate_text(result, one.first_order, 2) : "not known");
+  return text;
+}
+
 /// Whether a key pushes to one side or the other by its sign: coefficients of an earthquake, gravity and loads along an axis, inclination.
 bool has_two_ways(const std::string& key) {
   if (key == "tilt" || key.ends_with(".k_h") || key.ends_with(".k_v")) return true;
@@ -308,7 +342,7 @@ std::string limit_text(const LimitResult& result) {
   if (all.size() > most_lines) text += fmt::format("and {} realizations more\n", all.size() - most_lines);
   if (!result.complete) return text;
   const std::string answer = answer_text(result);
-  return text + quantiles_text(result) + (answer.empty() ? "" : answer + "\n");
+  return text + quantiles_text(result) + statistics_text(result) + (answer.empty() ? "" : answer + "\n");
 }
 
 std::string not_met_hint(const LimitResult& result) {

@@ -60,6 +60,8 @@ std::vector<int> blocks_of_cells(const MapGrid& grid, const record::ModelRecord&
 void MeasureObserver::begin(const record::ModelRecord& model) {
   model_ = model;
   result_.blocks = static_cast<int>(blocks_);
+  for (const record::DrawnStrength& drawn : model.strengths)
+    result_.strengths.emplace_back(drawn.name(), drawn.mean);
   double area = 0.0, moving = 0.0;
   for (const auto& block : std::span(model.blocks).first(std::min(blocks_, model.blocks.size()))) {
     if (block.fixed) continue;

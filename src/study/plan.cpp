@@ -289,6 +289,7 @@ Plan make_plan(const ScenarioText& source, const std::string& version, std::vect
   const scenario::StudySpec study = scenario.study.value_or(scenario::StudySpec{});
   plan.until = study.until;
   plan.realizations = study.until ? study.until->maximum : study.realizations;
+  plan.strata = scenario.strata;
   plan.axes = study.vary;
   plan.stage = study.stage.empty() ? scenario.stages.back().name : study.stage;
   plan.before_shaking = stage_before_shaking(scenario, plan.stage);

@@ -52,6 +52,7 @@ struct Plan {
   std::string title;
   std::uint64_t seed = 0;
   int realizations = 1;  ///< with `until`, the most
+  int strata = 0;        ///< rockmass::Sampling; the number of realizations, or 0: they are independent
   std::vector<scenario::VarySpec> axes;
   std::string stage;  ///< at whose end measures are compared
   std::string since;  ///< at whose end they begin; empty: the first excavation

@@ -13,7 +13,8 @@
 namespace keyblock::study {
 namespace {
 
-constexpr std::size_t least_digits = 4, hash_digits = 10;
+constexpr int most_strata = 1'000'000;
+constexpr std::size_t least_realization_digits = 4, hash_digits = 10;
 constexpr std::string_view known_variants[] = {"", "friction-", "friction+", "released", still_variant};
 
 bool has_only(std::string_view text, std::string_view letters) {
@@ -48,7 +49,7 @@ bool is_grid(const MapGrid& grid) {
 
 bool is_run_key(const std::string& key) {
   const std::size_t dash = key.find('-');
-  if (dash == std::string::npos || dash < 1 + least_digits || key.front() != 'r') return false;
+  if (dash == std::string::npos || dash < 1 + least_realization_digits || key.front() != 'r') return false;
   const std::string_view number = std::string_view(key).substr(1, dash - 1),
                          hash = std::string_view(key).substr(dash + 1);
   return has_only(number, "0123456789") && hash.size() == hash_digits && has_only(hash, "0123456789abcdef");
@@ -69,6 +70,7 @@ std::string mistake_in(const Plan& plan) {
     if (!find_measure(level.measure)) return fmt::format("the unknown measure \"{}\"", level.measure);
   if (plan.until && !find_measure(plan.until->measure))
     return fmt::format("the unknown measure \"{}\"", plan.until->measure);
+  if (plan.strata < 0 || plan.strata > most_strata) return fmt::format("{} strata", plan.strata);
   if (!(plan.confidence > 0.0 && plan.confidence < 1.0))
     return fmt::format("a confidence of {}", plan.confidence);
   return is_grid(plan.grid) ? "" : "a map of too many cells";

@@ -79,6 +79,7 @@ ordered_json description_json(const Plan& plan) {
       {"stage", plan.stage}, {"levels", levels},  {"confidence", plan.confidence}};
   if (!plan.since.empty()) json["since"] = plan.since;
   if (!plan.before_shaking.empty()) json["before_shaking"] = plan.before_shaking;
+  if (plan.strata > 0) json["strata"] = plan.strata;
   if (plan.until) json["until"] = until_json(*plan.until);
   if (plan.marginal)
     json["marginal"] = {{"friction", plan.marginal->friction}, {"share", plan.marginal->share}};
@@ -113,6 +114,7 @@ void read_description(const ordered_json& json, Plan& plan) {
                            level.at("threshold").get<double>()});
   }
   json.at("confidence").get_to(plan.confidence);
+  if (json.contains("strata")) json.at("strata").get_to(plan.strata);
   if (json.contains("until")) plan.until = read_until(json.at("until"));
   if (json.contains("marginal")) {
     plan.marginal = MarginalCheck{json.at("marginal").at("friction").get<double>(),

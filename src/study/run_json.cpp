@@ -85,6 +85,9 @@ RunResult read_result(const ordered_json& json) {
   json.at("unconverged_steps").get_to(run.unconverged_steps);
   run.max_overlap = number(json.at("max_overlap_m"));
   run.energy_residual_ratio = number(json.at("energy_residual_ratio"));
+  if (json.contains("strengths"))
+    for (const auto& [name, value] : json.at("strengths").items())
+      run.strengths.emplace_back(name, number(value));
   for (const auto& stage : json.at("stages")) run.stages.push_back(read_stage(stage));
   for (const auto& block : json.at("fallen")) {
     const auto& centroid = block.at("centroid");
@@ -118,6 +121,8 @@ std::string run_json(const RunResult& run, const std::string& input) {
                       {"depth_m", block.depth},
                       {"wall", wall == nullptr ? ordered_json() : ordered_json(wall)}});
   }
+  ordered_json strengths = ordered_json::object();
+  for (const auto& [name, value] : run.strengths) strengths[name] = results::number_or_null(value);
   const ordered_json json{{"format", run_format},
                           {"input", input},
                           {"key", run.key},
@@ -133,6 +138,7 @@ std::string run_json(const RunResult& run, const std::string& input) {
                           {"unconverged_steps", run.unconverged_steps},
                           {"max_overlap_m", run.max_overlap},
                           {"energy_residual_ratio", run.energy_residual_ratio},
+                          {"strengths", strengths},
                           {"stages", stages},
                           {"fallen", fallen},
                           {"map", map_json(run.map)}};

@@ -58,6 +58,8 @@ struct RunResult {
   long unconverged_steps = 0;
   double max_overlap = 0.0;  ///< m
   double energy_residual_ratio = 0.0;
+  /// Strengths that were drawn: name (record::DrawnStrength) and mean over the traces that bound blocks.
+  std::vector<std::pair<std::string, double>> strengths = {};
   std::vector<StageMeasures> stages;
   std::vector<FallenBlock> fallen;
   /// Of every cell of the study's grid: where the rock that lay there is at the end.

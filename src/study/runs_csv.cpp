@@ -20,6 +20,14 @@ std::vector<std::string> stage_names(const StudyData& study) {
   return names;
 }
 
+std::vector<std::string> strength_names(const StudyData& study) {
+  std::vector<std::string> names;
+  for (const RunResult& run : study.runs)
+    for (const auto& [name, value] : run.strengths)
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  return names;
+}
+
 const char* text_of(Marginal marginal) {
   switch (marginal) {
     case Marginal::yes:
@@ -35,7 +43,7 @@ const char* text_of(Marginal marginal) {
 class Table {
  public:
   Table(const StudyData& study, const Summary& summary)
-      : study_(study), summary_(summary), stages_(stage_names(study)) {}
+      : study_(study), summary_(summary), stages_(stage_names(study)), strengths_(strength_names(study)) {}
 
   std::string text() {
     header();
@@ -73,6 +81,7 @@ class Table {
       for (const Intensity& i : intensities()) field(stage + "." + i.name);
       for (const Measure& m : measures()) field(stage + "." + m.name);
     }
+    for (const std::string& strength : strengths_) field(strength);
     out_ += '\n';
   }
 
@@ -96,6 +105,10 @@ class Table {
     out_ += ',';
     out_ += text_of(summary_.marginal[r]);
     for (std::size_t s = 0; s < stages_.size(); ++s) stage(run, s);
+    for (const std::string& name : strengths_) {
+      const auto found = std::ranges::find(run.strengths, name, &std::pair<std::string, double>::first);
+      known(found == run.strengths.end() ? statistics::not_a_number : found->second);
+    }
     out_ += '\n';
   }
 
@@ -116,6 +129,7 @@ class Table {
   const StudyData& study_;
   const Summary& summary_;
   std::vector<std::string> stages_;
+  std::vector<std::string> strengths_;  ///< that were drawn
   std::string out_;
 };
 

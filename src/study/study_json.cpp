@@ -105,6 +105,18 @@ ordered_json part_json(const StudyData& study, const std::optional<DamagePart>& 
       {"falls", share_json(part->falls)}, {"levels", levels_json(study, part->levels)}, {"measures", all}};
 }
 
+ordered_json hangs_on_json(const Combination& c) {
+  ordered_json rows = ordered_json::array();
+  for (const Combination::OfMeasure& of : c.hangs_on) {
+    for (const Dependence& one : of.dependences)
+      rows.push_back({{"measure", of.measure},
+                      {"strength", one.strength},
+                      {"rank_correlation", estimate(one.rank_correlation)},
+                      {"first_order_index", estimate(one.first_order)}});
+  }
+  return rows;
+}
+
 ordered_json combination_json(const StudyData& study, const Combination& c) {
   ordered_json json{{"values", texts(c.values)}, {"n", c.runs.size()}, {"failed", c.failed}};
   for (std::size_t k = 0; k < intensities().size(); ++k) json[intensities()[k].name] = number(c.intensity[k]);
@@ -119,6 +131,7 @@ ordered_json combination_json(const StudyData& study, const Combination& c) {
   json["measures"] = all;
   json["before"] = part_json(study, c.before);
   json["added"] = part_json(study, c.added);
+  json["hangs_on"] = hangs_on_json(c);
   json["map"] = {{"n", c.mapped}, {"fallen", c.fallen}, {"fallen_or_loosened", c.disturbed}};
   return json;
 }

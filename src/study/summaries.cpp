@@ -134,6 +134,26 @@ void part_at_shaking(const StudyData& study, ResampleStore& store, Combination& 
   for (const MeasureSummary& m : c.measures) c.added->measures.push_back(m.description);
 }
 
+void find_dependences(const StudyData& study, Combination& c) {
+  for (const DamageLevel& level : study.levels) {
+    const auto measure = find_measure(level.measure);
+    if (!measure ||
+        std::ranges::find(c.hangs_on, level.measure, &Combination::OfMeasure::measure) != c.hangs_on.end())
+      continue;
+    std::vector<const Strengths*> strengths;
+    std::vector<double> values;
+    for (const std::size_t r : c.runs) {
+      const auto damage = damage_between(study.runs[r], study.since, study.stage);
+      const double value = damage ? measures()[*measure].of(*damage) : statistics::not_a_number;
+      if (std::isnan(value)) continue;
+      strengths.push_back(&study.runs[r].strengths);
+      values.push_back(value);
+    }
+    std::vector<Dependence> found = dependences(strengths, values, study.confidence);
+    if (!found.empty()) c.hangs_on.push_back({level.measure, std::move(found)});
+  }
+}
+
 void count_cells(const StudyData& study, Combination& c) {
   using record::BlockStatus;
   if (study.grid.columns <= 0 || study.grid.rows <= 0) return;
@@ -278,6 +298,7 @@ Summary summarize(const StudyData& study) {
     choose_worst_and_median(study, c);
     describe_measures(study, store, c);
     part_at_shaking(study, store, c);
+    find_dependences(study, c);
     count_cells(study, c);
     summary.combinations.push_back(std::move(c));
   }

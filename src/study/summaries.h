@@ -8,6 +8,7 @@
 #include "statistics/bootstrap.h"
 #include "statistics/curves.h"
 #include "statistics/fragility.h"
+#include "study/dependence.h"
 #include "study/measures.h"
 #include "study/run_result.h"
 
@@ -60,6 +61,12 @@ struct Combination {
   LevelSummary falls;                     ///< a block has fallen
   /// Of the same runs, until the end of StudyData::before and from there on; none without such a stage.
   std::optional<DamagePart> before, added;
+  /// How far each measure of StudyData::levels hangs on the strengths that were drawn.
+  struct OfMeasure {
+    std::string measure;
+    std::vector<Dependence> dependences;
+  };
+  std::vector<OfMeasure> hangs_on;
   std::size_t mapped = 0;  ///< runs with a map
   /// By cell of the grid: in how many of them its rock has fallen, and has fallen or loosened; −1 where all excavate it.
   std::vector<int> fallen, disturbed;

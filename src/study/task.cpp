@@ -51,6 +51,7 @@ scenario::Scenario scenario_of(const Plan& plan, const PlannedRun& run) {
   scenario::Scenario scenario =
       scenario::parse_scenario_text(plan.text, plan.scenario, overrides, scenario::StudyTable::leave_out);
   for (const fs::path& path : scenario::input_paths(scenario)) check_file(plan, path);
+  scenario.strata = plan.strata;
   apply_variant(scenario, run.variant, plan.marginal.value_or(MarginalCheck{}));
   if (!run.variant.empty()) scenario.text += fmt::format("# variant {}\n", run.variant);
   return scenario;

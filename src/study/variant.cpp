@@ -19,10 +19,19 @@ void change_friction(scenario::Scenario& scenario, double by) {
   const auto change = [&](std::optional<double>& friction) {
     if (friction) friction = std::clamp(*friction + by, 0.0, steepest_friction);
   };
+  const auto change_own = [&](scenario::JointKeys& joints) {
+    change(joints.friction);
+    joints.change_of_mapped_friction = by;
+    auto& random = joints.random[static_cast<std::size_t>(rockmass::StrengthKey::friction)];
+    if (!random) return;
+    for (double* end : {&random->min, &random->max})
+      *end = std::clamp(*end + by, 0.0, rockmass::most_friction);
+    random->distribution.mean = std::max(0.0, random->distribution.mean + by);
+  };
   if (!scenario.joints.friction) scenario.joints.friction = 0.0;
   change(scenario.joints.friction);
-  for (auto& set : scenario.joint_sets) change(set.joints.friction);
-  for (auto& map : scenario.trace_maps) change(map.joints.friction);
+  for (auto& set : scenario.joint_sets) change_own(set.joints);
+  for (auto& map : scenario.trace_maps) change_own(map.joints);
   if (scenario.rock_bridge) change(scenario.rock_bridge->joints.friction);
   for (auto& interface : scenario.interfaces) change(interface.joints.friction);
 }

@@ -158,6 +158,83 @@ motion = "shaking"
         self.assertEqual((self.folder / "out/limit.json").read_text(), (self.folder / "one/limit.json").read_text())
 
 
+class YieldCoefficients(Safety):
+    """k_h at which a block on a plane moves: (c L + W cos α tan φ − W sin α)/(W (cos α + sin α tan φ))."""
+
+    def incline(self, alpha, phi, cohesion=0.0, length=1.0, height=1.0):
+        """Gravity stays upright, and the plane dips α to the right."""
+        c, s = math.cos(math.radians(alpha)), math.sin(math.radians(alpha))
+        turned = lambda x, y: [c * x + s * y, -s * x + c * y]  # noqa: E731
+        block = lambda a, b, x, y: [turned(a, x), turned(b, x), turned(b, y), turned(a, y)]  # noqa: E731
+        self.write(
+            "incline.toml",
+            f"""
+[rock]
+density = 2600.0
+young = 5.0e10
+poisson = 0.2
+state = "plane-stress"
+
+[joints]
+friction = {phi}
+cohesion = {cohesion}
+{f"residual_cohesion = {cohesion}" if cohesion else ""}
+
+[time]
+step = 0.005
+
+[[block]]
+name = "base"
+outer = {block(-5.0, 5.0, -1.0, 0.0)}
+fixed = true
+
+[[block]]
+name = "block"
+outer = {block(-length / 2, length / 2, 0.0, height)}
+
+[[stage]]
+name = "settled"
+kind = "settle"
+""",
+        )
+
+    def test_of_a_block_on_a_plane(self):
+        # α, φ, c, L, height, k_h: the last two with weights of 50 and 180 kN.
+        for number, (alpha, phi, cohesion, length, weight, exact) in enumerate(
+            ((30, 40, 0, 1.0, 25.506e3, 0.176327), (35, 30, 5e3, 2.0, 50e3, 0.086378), (40, 32, 20e3, 3.0, 180e3, 0.144920))
+        ):
+            self.incline(alpha, phi, cohesion, length, weight / (2600 * 9.81 * length))
+            said = self.safety("incline.toml", "--yield", "--to", 1, "--tolerance", 0.002, out=f"y{number}").stdout
+            low, high = self.bracket(f"y{number}")
+            # Equilibrium is known to 10⁻⁴ of the weight, and so is the coefficient.
+            self.assertLess(low, exact + 1e-4)
+            self.assertGreater(high, exact - 1e-4)
+            self.assertLessEqual((high - low) / high, 0.002)
+            self.assertRegex(said, r"The yield coefficient is 0\.\d+: the rock holds to 0\.\d+ and falls from 0\.\d+ ")
+            self.assertIn('a horizontal seismic coefficient acts from the end of "settled" on', said)
+
+    def test_pushes_to_the_side_to_which_the_ground_falls(self):
+        self.safety(CASES / "limit_slope.toml", "--yield")
+        found = self.found()
+        self.assertEqual((found["key"], found["from"], found["to"]), ("safety.k_h", 0.0, -1.0))
+        (limit,) = found["realizations"]
+        exact = -math.tan(math.radians(10.0))
+        self.assertLess(limit["bracket"]["met"], 0.9995 * exact)
+        self.assertGreater(limit["bracket"]["not_met"], 1.0005 * exact)
+        # The same run by hand.
+        trial = limit["trials"][-1]
+        self.keyblock("run", CASES / "limit_slope.toml", "--set", f"safety.k_h={trial['value']!r}", "-o", "run")
+        self.assertEqual(self.summary("run")["state_hash"], trial["state_hash"])
+        self.assertEqual(self.summary("run")["stages"][-1]["name"], "seismic coefficient")
+
+    def test_what_is_refused(self):
+        flat = self.safety(CASES / "limit_incline.toml", "--yield", expect=1).stderr
+        self.assertIn("above 0 it pushes to the right, below 0 to the left", flat)
+        slope = CASES / "limit_slope.toml"
+        self.assertIn("in motion, where no seismic coefficient acts", self.safety(slope, "--yield", "--area", 1, expect=1).stderr)
+        self.assertIn("not in range", self.safety(slope, "--yield", "--to", 20, expect=1).stderr)
+
+
 class Mistakes(Safety):
     def refused(self, text, *arguments):
         said = self.safety(CASES / "limit_slope.toml", *arguments, expect=1).stderr

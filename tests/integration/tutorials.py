@@ -37,6 +37,9 @@ class Tutorials(unittest.TestCase):
     def test_study(self):
         self.follow("study")
 
+    def test_slope(self):
+        self.follow("slope")
+
     def test_arch(self):
         self.follow("arch")
 

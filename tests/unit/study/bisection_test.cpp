@@ -76,6 +76,22 @@ TEST(Bisection, FirstBothEndsThenWhatMayFollow) {
   EXPECT_THAT(bisection.next(ends, 3).values, ElementsAre(4.0, 2.0, 6.0));
 }
 
+TEST(Bisection, WhatIsToBeDecidedIsNoInnerPointOfABracket) {
+  for (const double limit : {0.7, 0.99, 1.0, 1.001, 1.8}) {
+    for (const auto& [from, to] : {std::pair{0.5, 2.0}, {2.0, 0.5}}) {
+      const Bisection bisection(from, to, 0.2, 1, 1.0);
+      const Bisection::State state = Trials(bisection, from, to, limit).run(3);
+      EXPECT_EQ(state.status, Status::found);
+      const auto [low, high] = std::minmax(state.not_met, state.met);
+      EXPECT_LE(low, limit);
+      EXPECT_GE(high, limit);
+      EXPECT_TRUE(high <= 1.0 || low >= 1.0) << low << " " << high;
+    }
+  }
+  EXPECT_EQ(Bisection(2.0, 3.0, 0.2, 1, 1.0).next([](double) { return std::nullopt; }, 2).needed, 2U)
+      << "beyond the ends";
+}
+
 TEST(Bisection, EndsThatTellNothingEndIt) {
   const Bisection bisection(0.0, 8.0, 0.02);
   for (const auto& [at_from, at_to, status] : {std::tuple{true, true, Status::met_at_both},

@@ -11,6 +11,7 @@
 #include "core/checked_json.h"
 #include "core/error.h"
 #include "scenario/parse.h"
+#include "study/limit_statistics.h"
 #include "study/limit_words.h"
 
 namespace keyblock::study {
@@ -334,6 +335,58 @@ TEST(Limit, JsonHasBracketsAndRuns) {
   EXPECT_EQ(json.at("quantiles").at(2).at("value"), 19.5);
   EXPECT_TRUE(json.at("quantiles").at(2).at("low").is_null());
   EXPECT_EQ(json.at("met_share").at("value"), (std::vector<double>{40.0, 19.5}));
+}
+
+LimitResult factors(const std::vector<double>& values) {
+  std::vector<Bisection::State> states;
+  for (const double value : values) states.push_back({Status::found, value - 0.01, value + 0.01});
+  LimitResult result = result_of(states);
+  result.request.key = safety_key;
+  result.request.from = 0.5;
+  result.request.to = 2.0;
+  return result;
+}
+
+/// By hand: mean 1.125, s = 0.15; t of 3 degrees of freedom 3.18245; Wilson of 1 of 4: 0.045587 … 0.699358.
+TEST(LimitStatistics, HaveMeanAndProbabilityOfFailureWithIntervals) {
+  LimitResult result = factors({0.975, 1.025, 1.225, 1.275});
+  const LimitMean mean = mean_limit(result);
+  EXPECT_NEAR(mean.mean.value, 1.125, 1e-12);
+  EXPECT_NEAR(mean.standard_deviation, 0.147196, 1e-6);
+  EXPECT_NEAR(mean.mean.high, 1.125 + 3.182446 * 0.147196 / 2.0, 1e-5);
+  const auto failure = failure_share(result);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->below, 1U);
+  EXPECT_NEAR(failure->share.low, 0.045587, 1e-6);
+  EXPECT_NEAR(failure->share.high, 0.699358, 1e-6);
+  result.realizations[3].state = {Status::met_at_none};
+  EXPECT_TRUE(mean_limit(result).at_least);
+  EXPECT_TRUE(std::isnan(mean_limit(result).mean.low));
+  EXPECT_EQ(failure_share(result)->below, 1U);
+  result.request.from = 1.1;
+  EXPECT_FALSE(failure_share(result)) << "1 is beyond the search";
+  result.request.key = "joints.friction";
+  EXPECT_FALSE(failure_share(result));
+}
+
+TEST(LimitStatistics, KnowWhichStrengthsTheLimitsHangOn) {
+  std::vector<double> values;
+  for (int k = 0; k < 36; ++k) values.push_back(1.0 + 0.02 * (k % 6) + 0.001 * (k / 6));
+  LimitResult result = factors(values);
+  for (int k = 0; k < 36; ++k)
+    result.realizations[static_cast<std::size_t>(k)].strengths = {{"bedding.cohesion", k / 6},
+                                                                  {"bedding.friction", k % 6}};
+  const auto found = dependences(result);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].strength, "bedding.friction");
+  EXPECT_GT(found[0].first_order.value, 0.99);
+  EXPECT_LT(found[1].first_order.value, 0.1);
+  EXPECT_EQ(strength_title("bedding.residual_friction"), "residual friction of “bedding”");
+  const auto json = nlohmann::json::parse(limit_json(result));
+  EXPECT_EQ(json["hangs_on"][0]["strength"], "bedding.friction");
+  EXPECT_EQ(json["realizations"][7]["strengths"]["bedding.cohesion"], 1.0);
+  EXPECT_THAT(limit_csv(result), HasSubstr(",just_beyond,bedding.cohesion,bedding.friction\n"));
+  EXPECT_THAT(statistics_csv(result), HasSubstr("\nfirst-order index of bedding.friction,"));
 }
 
 }  // namespace

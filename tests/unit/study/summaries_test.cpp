@@ -4,9 +4,11 @@
 
 #include <cmath>
 
+#include "core/checked_json.h"
 #include "made_run.h"
 #include "record/damage_fields.h"
 #include "statistics/proportion.h"
+#include "study/study_json.h"
 #include "synthetic_study.h"
 
 namespace keyblock::study {
@@ -217,6 +219,31 @@ TEST(Summaries, EqualDifferencesAreOneValue) {
   EXPECT_EQ(fallen.description.standard_deviation.value, 0.0);
   EXPECT_EQ(fallen.description.standard_deviation.high, 0.0);
   EXPECT_EQ(fallen.running.mean.back().low, fallen.running.mean.back().high);
+}
+
+/// Fallen area is 2 · friction + cohesion, of strengths that go up and down apart from each other.
+TEST(Summaries, TellWhatTheMeasureOfALevelHangsOn) {
+  StudyData study;
+  study.axes = {{"stage.quake.scale", {"1"}}};
+  study.levels = {{"light", "fallen_area_m2", 1.0}, {"heavy", "fallen_area_m2", 9.0}};
+  study.stage = "quake";
+  for (int k = 0; k < 49; ++k) {
+    const double friction = k % 7, cohesion = k / 7;
+    study.runs.push_back(made_run(k, {"1"}, 2.0, 2.0 * friction + cohesion));
+    study.runs.back().strengths = {
+        {"set.cohesion", cohesion}, {"set.friction", friction}, {"set.tension", 4.0}};
+  }
+  const Summary summary = summarize(study);
+  ASSERT_EQ(summary.combinations.at(0).hangs_on.size(), 1U) << "once for each measure";
+  const auto& found = summary.combinations[0].hangs_on[0].dependences;
+  ASSERT_EQ(found.size(), 2U) << "what is the same in all runs is left out";
+  EXPECT_EQ(found[0].strength, "set.friction");
+  EXPECT_NEAR(found[0].first_order.value, 0.8, 0.03);
+  EXPECT_LT(found[1].first_order.value, 0.3);
+  const auto json = nlohmann::json::parse(study_json(study, summary));
+  EXPECT_EQ(json["combinations"][0]["hangs_on"][0]["measure"], "fallen_area_m2");
+  EXPECT_EQ(json["combinations"][0]["hangs_on"][1]["strength"], "set.cohesion");
+  EXPECT_NE(runs_csv(study, summary).find(",set.cohesion,set.friction,set.tension\n"), std::string::npos);
 }
 
 TEST(Summaries, MapsCountRunsByCell) {

@@ -67,6 +67,8 @@ export interface Combination {
   measures: Record<string, MeasureSummary>;
   before: DamagePart | null;
   added: DamagePart | null;
+  /** How far measures hang on strengths that were drawn. */
+  hangs_on: { measure: string; strength: string; rank_correlation: Estimate; first_order_index: Estimate }[];
   map: { n: number; fallen: number[]; fallen_or_loosened: number[] };
 }
 

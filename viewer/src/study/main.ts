@@ -3,6 +3,7 @@ import { findingList } from "../findings";
 import { count, integer } from "../format";
 import { whenPrinting } from "../printing";
 import { readStudy, type Study } from "./data";
+import { dependenceTable } from "./dependence";
 import { Distribution } from "./distribution";
 import { resultSection } from "./first_screen";
 import { FragilityView, probabilityTable } from "./fragility";
@@ -76,6 +77,8 @@ function statistics(study: Study, selection: Selection): Child[] {
       new Distribution(study, selection).element,
     ),
   );
+  if (study.json.combinations.some((c) => c.hangs_on.length > 0))
+    parts.push(section("hangs-on", "What it hangs on", dependenceTable(study)));
   const mapped = study.json.combinations.some((c) => c.map.n > 0);
   if (mapped && grid.columns > 0) {
     const map = new FrequencyMaps(study, selection);
