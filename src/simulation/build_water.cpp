@@ -210,7 +210,7 @@ std::optional<record::WaterRecord> water_record(const Model& model, const dynami
   dynamics::WaterTotals totals = water.water->totals(model, state, water.memory);
   if (!totals.acts) return std::nullopt;
   return record::WaterRecord{std::move(totals.name), totals.largest_pressure, totals.wet, totals.drained,
-                     std::move(totals.forces)};
+                             std::move(totals.forces)};
 }
 
 int water_in(const RunSetup& setup, std::size_t k) {
