@@ -67,6 +67,8 @@ cutting::JointStrengths joint_strengths(const Scenario& scenario) {
   cutting::JointStrengths strengths{.standard = strength({})};
   for (const OwnJoints& joints : own_joint_sets(scenario))
     strengths.joint_sets.push_back(strength(joints.keys));
+  // No interface is cut, and none may say that joints differ.
+  strengths.joint_sets.resize(static_cast<std::size_t>(label_of_first_interface(scenario).index));
   for (const OwnJoints& joints : own_trace_maps(scenario))
     strengths.trace_maps.push_back(strength(joints.keys));
   return strengths;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/index.h"
+#include "cutting/interfaces.h"
 #include "rockmass/intensity.h"
 #include "rockmass/section.h"
 #include "scenario/magnitudes.h"
@@ -261,6 +262,31 @@ void warn_of_large_blocks(const Scenario& scenario, const BlockModel& model,
       closer));
 }
 
+/// Interfaces of blocks that do not touch, until they do.
+void warn_of_interfaces(const Scenario& scenario, const BlockModel& model,
+                        std::vector<std::string>& warnings) {
+  const std::vector<cutting::InterfaceFace> faces = cutting::interface_faces(model.system);
+  for (std::size_t k = 0; k < scenario.interfaces.size(); ++k) {
+    const InterfaceSpec& spec = scenario.interfaces[k];
+    if (std::ranges::find(faces, model.system.interfaces[k].joint, &cutting::InterfaceFace::joint) !=
+        faces.end())
+      continue;
+    warnings.push_back(fmt::format("{}{}: no edge of '{}' lies on one of '{}'", spec.path,
+                                   place_text(scenario, spec.path), spec.between.first, spec.between.second));
+  }
+}
+
+void warn_of_bridges(const Scenario& scenario, std::vector<std::string>& warnings) {
+  if (!scenario.rock_bridge) return;
+  if (scenario.cutting.bridges_dead_ends ||
+      std::ranges::any_of(scenario.joint_sets, [](const JointSetSpec& spec) { return spec.gap_bonds; }))
+    return;
+  warnings.push_back(
+      fmt::format("{}{}: no joint has bridges; [cutting] dead_ends = \"bridge\" and gap_bonds of a joint set "
+                  "make them",
+                  scenario.rock_bridge->path, place_text(scenario, scenario.rock_bridge->path)));
+}
+
 }  // namespace
 
 void add_joint_warnings(const Scenario& scenario, const BlockModel& model,
@@ -268,6 +294,12 @@ void add_joint_warnings(const Scenario& scenario, const BlockModel& model,
   if (!scenario.accepted.lost_joints) warn_of_lost_joints(scenario, model, warnings);
   warn_of_maps_outside(scenario, model, warnings);
   warn_of_large_blocks(scenario, model, warnings);
+}
+
+void add_own_joint_warnings(const Scenario& scenario, const BlockModel& model,
+                            std::vector<std::string>& warnings) {
+  warn_of_interfaces(scenario, model, warnings);
+  warn_of_bridges(scenario, warnings);
 }
 
 }  // namespace keyblock::scenario

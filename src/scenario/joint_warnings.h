@@ -14,5 +14,8 @@ std::string joints_in_model(const Scenario& scenario, const cutting::BlockSystem
 /// outside the domain, with what brings them into it; blocks as large as an opening. Added to `warnings`.
 void add_joint_warnings(const Scenario& scenario, const BlockModel& model,
                         std::vector<std::string>& warnings);
+/// Of interfaces between blocks that do not touch, and of rock bridges that no joint has.
+void add_own_joint_warnings(const Scenario& scenario, const BlockModel& model,
+                            std::vector<std::string>& warnings);
 
 }  // namespace keyblock::scenario

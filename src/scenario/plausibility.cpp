@@ -5,7 +5,6 @@
 #include <map>
 #include <numbers>
 
-#include "cutting/interfaces.h"
 #include "rockmass/distribution.h"
 #include "rockmass/intensity.h"
 #include "scenario/build.h"
@@ -348,31 +347,6 @@ std::vector<std::string> rock_mass_warnings(const Scenario& scenario) {
   return Plausibility(scenario).rock_mass_warnings();
 }
 
-/// Interfaces of blocks that do not touch, until they do.
-static void warn_of_interfaces(const Scenario& scenario, const BlockModel& model,
-                               std::vector<std::string>& warnings) {
-  const std::vector<cutting::InterfaceFace> faces = cutting::interface_faces(model.system);
-  for (std::size_t k = 0; k < scenario.interfaces.size(); ++k) {
-    const InterfaceSpec& spec = scenario.interfaces[k];
-    if (std::ranges::find(faces, model.system.interfaces[k].joint, &cutting::InterfaceFace::joint) !=
-        faces.end())
-      continue;
-    warnings.push_back(fmt::format("{}{}: no edge of '{}' lies on one of '{}'", spec.path,
-                                   place_text(scenario, spec.path), spec.between.first, spec.between.second));
-  }
-}
-
-static void warn_of_bridges(const Scenario& scenario, std::vector<std::string>& warnings) {
-  if (!scenario.rock_bridge) return;
-  if (scenario.cutting.bridges_dead_ends ||
-      std::ranges::any_of(scenario.joint_sets, [](const JointSetSpec& spec) { return spec.gap_bonds; }))
-    return;
-  warnings.push_back(
-      fmt::format("{}{}: no joint has bridges; [cutting] dead_ends = \"bridge\" and gap_bonds of a joint set "
-                  "make them",
-                  scenario.rock_bridge->path, place_text(scenario, scenario.rock_bridge->path)));
-}
-
 void add_block_warnings(const Scenario& scenario, const BlockModel& model,
                         std::vector<std::string>& warnings) {
   const std::vector<cutting::CutBlock>& blocks = model.system.blocks;
@@ -386,8 +360,7 @@ void add_block_warnings(const Scenario& scenario, const BlockModel& model,
     if (held > 0 && static_cast<std::size_t>(held) == blocks.size())
       warnings.push_back(path + ": holds every block; no rock is left");
   }
-  warn_of_interfaces(scenario, model, warnings);
-  warn_of_bridges(scenario, warnings);
+  add_own_joint_warnings(scenario, model, warnings);
   if (!scenario.domain) return;
   add_joint_warnings(scenario, model, warnings);
   for (std::size_t k = 0; k < scenario.trace_maps.size(); ++k) {

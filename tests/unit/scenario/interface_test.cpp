@@ -54,6 +54,22 @@ TEST(Interface, ComesAfterJointSetsAndBeforeTraceMaps) {
   EXPECT_THAT(names_of(own_joints(scenario)), ElementsAre("bedding", "mortar", "fault"));
 }
 
+// Strengths of joints say where slivers go; an interface is not among them.
+TEST(Interface, ChangesNoBlockOfADomain) {
+  const std::string blocks =
+      "block=[{name='a', outer=[[5, 0], [6, 0], [6, 1]]}, {name='b', outer=[[5, 2], [6, 2], [6, 3]]}]";
+  const std::vector<std::string> denser{blocks, "joint_set.bedding.spacing=0.05",
+                                        "joint_set.bedding.dip_std=9.0"};
+  std::vector<std::string> with = denser;
+  with.emplace_back("interface=[{between=['a', 'b'], friction=5}]");
+  const cutting::BlockSystem one = build_blocks(parse(jointed_domain, denser), 0).system,
+                             other = build_blocks(parse(jointed_domain, with), 0).system;
+  EXPECT_GT(one.statistics.merged_slivers, 0);
+  ASSERT_EQ(one.blocks.size(), other.blocks.size());
+  for (std::size_t b = 0; b < one.blocks.size(); ++b)
+    EXPECT_EQ(one.blocks[b].polygon.outer, other.blocks[b].polygon.outer);
+}
+
 TEST(Interface, HasItsNameWhereJointsAreNamed) {
   const std::vector<std::string> more{contact, "stage.quiet.strength_factor=1.5",
                                       "stage.quiet.strength_of=['top-base']",
