@@ -127,6 +127,7 @@ void build_springs(const Model& model, const State& state, const Drive& drive,
   keep(springs.kn, largest(spring.normal_stiffness(), impacts.stiffness));
   keep(springs.ks, spring.shear_stiffness());
   keep(springs.bound, bound);
+  keep(springs.least, -bound);
   keep(springs.low, contact::normal_spring(Lanes{}, tensile).low);
   keep(springs.friction, where(fused, broadcast(-1.0), law.friction));
   keep(springs.constant, constant);
@@ -183,7 +184,7 @@ RowFacts ContactCoupling::build(const Model& model, const State& state, const Dr
     out.team.for_range(contacts_.size(), contacts_worth_threads, of_some);
   }
   if (find_faces_) build_faces(model, state, drive, out);
-  return {may_break, lacks_room, has_distant};
+  return {.may_break = may_break, .lacks_room = lacks_room, .has_distant = has_distant};
 }
 
 /// Of each contact, dashpot over stiffness: the same for all contacts of two blocks, by the stiffest of them.
@@ -268,8 +269,9 @@ RowFacts ContactCoupling::build_row(const Drive& drive, std::size_t c, const Cou
   if (!drive.rotation.empty())
     row.moved += drive.rotation[c].x * row.normal + drive.rotation[c].y * row.tangent();
   out.owners.set(c, row.unknown_a, row.unknown_b);
-  return {contact.memory.bonded && !contact.fused, row.pair == Row::without_room,
-          std::abs(row.position - 0.5) > 1.0};
+  return {.may_break = contact.memory.bonded && !contact.fused,
+          .lacks_room = row.pair == Row::without_room,
+          .has_distant = std::abs(row.position - 0.5) > 1.0};
 }
 
 double reduced_mass(const Points& points, const contact::Contact& c) {

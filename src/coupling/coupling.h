@@ -23,6 +23,7 @@ class Points;
 class RowOwners;
 class StagedSupports;
 struct State;
+class StepProblem;
 class StillWater;
 
 /// A material point of a block, by the block's basis functions there.
@@ -44,6 +45,7 @@ struct Element {
   std::string name;       ///< that of the scenario, or "spring[0]" by its place there
   double limit = 0.0;     ///< N per thickness, the largest force; infinite: none
   ElementEnd from, to;
+  double spacing = 0.0;  ///< m out of plane, of which a section has one; 0: it goes on through the section
 };
 
 /// What an element carries.
@@ -55,15 +57,18 @@ struct Carried {
       0.0;  ///< m, of springs the change of length since they were installed, of supports the mean way of what they support
   double yielded = 0.0;  ///< m of it, that does not come back
   bool present = false;
+  bool ruptured = false;  ///< it has broken, and is there no more
 };
 
 /// What some rows of a step are, that all of the problem asks for.
 struct RowFacts {
-  bool may_break = false;    ///< there are bonds that may break in this step
-  bool lacks_room = false;   ///< the solver's pattern does not have the pair of blocks
-  bool has_distant = false;  ///< the vertex is beyond an end of its edge by more than half of the edge
+  bool may_break = false;        ///< there are bonds that may break in this step
+  bool lacks_room = false;       ///< the solver's pattern does not have the pair of blocks
+  bool has_distant = false;      ///< the vertex is beyond an end of its edge by more than half of the edge
+  bool may_change_laws = false;  ///< Coupling::change_laws has something to say of them
   RowFacts& operator|=(const RowFacts& other) {
     may_break |= other.may_break;
+    may_change_laws |= other.may_change_laws;
     lacks_room |= other.lacks_room;
     has_distant |= other.has_distant;
     return *this;
@@ -79,6 +84,15 @@ struct CouplingTotals {
     closed += other.closed;
     return *this;
   }
+};
+
+/// Other limits of a shear spring from now on, within a step (Coupling::change_laws).
+struct LawChange {
+  std::size_t row = 0;  ///< of the problem
+  /// By how much of its limit it is beyond that: an event, such as rupture. Where events come at once, the largest excess is first. 0: it is
+  /// none, but a limit that goes with other forces.
+  double excess = 0.0;
+  double least = 0.0, largest = 0.0;  ///< N per thickness; both 0: there is no spring any more
 };
 
 /// Where a coupling writes its rows.
@@ -133,6 +147,11 @@ class Coupling {
                          std::span<const double> /*memory*/, CouplingRows /*out*/) const {
     return {};
   }
+
+  /// What the solution of a step, as it is so far, does to the laws of its rows, added to `changes`. Asked only where
+  /// RowFacts::may_change_laws. Events end: each row has few. Nothing of it is remembered but by account(), which sees it in the springs.
+  virtual void change_laws(const StepProblem& /*problem*/, std::size_t /*first*/,
+                           std::span<const double> /*memory*/, std::vector<LawChange>& /*changes*/) const {}
 
   /// Before blocks are moved: where its energy went in the step, into the ledger, and what it stores at the end as the step has it, into
   /// the energy of its kind in the state; what it remembers. `first`: its first row. spin: rad, by which the step turns each block.

@@ -23,6 +23,9 @@ class StagedSupports {
   /// They come to life, without force at the positions of the state. now: as State::installed, those that do.
   virtual void install(const Model& model, const State& state, std::span<const std::uint8_t> now,
                        std::span<double> memory) const = 0;
+  /// The stage is over that installed them: what was held while it lasted is held no more.
+  virtual void end_stage(const Model& /*model*/, const State& /*state*/, std::span<double> /*memory*/) const {
+  }
 };
 
 /// Rock far away, beside the model.

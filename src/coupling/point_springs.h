@@ -1,6 +1,8 @@
 #pragma once
 #include <algorithm>
+#include <limits>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -10,7 +12,7 @@
 
 namespace keyblock::dynamics {
 
-/// A straight spring between material points of two blocks.
+/// A spring between material points of two blocks: along the line between them, or across the line of another spring.
 struct PointSpring {
   std::string name;
   double stiffness = 0.0;  ///< N/m per thickness
@@ -18,23 +20,48 @@ struct PointSpring {
       0.0;          ///< N per thickness, largest force in tension and compression; infinite: it never yields
   Vec2 from, to;    ///< m, its ends before the run, when it has no force
   int staged = -1;  ///< State::installed that says whether it is there; −1: always
+  const char* kind = "spring";  ///< Element::kind
+  double spacing = 0.0;         ///< m, Element::spacing
+  bool pulls_only = false;      ///< it is slack where it is shorter than without force
+  double rupture =
+      std::numeric_limits<double>::infinity();  ///< m of yielded elongation, beyond which it breaks
+  double pretension = 0.0;  ///< N per thickness, held until the end of the stage that installs it
+  int across = -1;  ///< the spring, by number, across whose line it acts: a dowel; −1: along its own line
+  double yield_along = std::numeric_limits<double>::infinity();  ///< N per thickness, of the bar of a dowel
 
-  /// m, without force.
-  [[nodiscard]] double length() const { return norm(from - to); }
+  [[nodiscard]] double least() const { return pulls_only ? 0.0 : -yield; }
+  [[nodiscard]] bool has_events() const {
+    return rupture < std::numeric_limits<double>::infinity() || pretension > 0.0;
+  }
+  /// m, between its ends without force.
+  [[nodiscard]] double length() const { return across < 0 ? norm(from - to) : 0.0; }
 };
 
 /// Springs between points of blocks: a coupling by rows. The shear spring of a row acts along the line between its points,
 ///
-///     T = clamp(k (length now − length without force − p), ±yield)
+///     T = clamp(k (length − length without force − p), least, yield)
 ///
 /// with p the elongation that leaves no force, in the memory: what has yielded, what it was long when a stage installed it, and what pretension
-/// asked for. The memory has what has yielded beside it, and how much longer than without force the spring was when it was installed. The normal spring acts across the line with T/L where T pulls: by that the force
-/// turns with the line within the step. Lengths are those of the positions at the start of the step, so that nothing drifts.
+/// asked for. The memory has what has yielded beside it, and how much longer than without force the spring was when it was installed. The
+/// normal spring acts across the line with T/L where T pulls: by that the force turns with the line within the step. Lengths are those of
+/// the positions at the start of the step, so that nothing drifts. The force is that at the share q of the step (Integrator::place_of_spring):
+/// a row of stiffness q k that is stretched by s/q at the start, s being what k was stretched by.
+///
+/// A dowel acts across the line of another spring, the bar, from a point of the one block to a point of the other: in the place of the length is
+/// how far they are apart across the mean of the directions of the bar in the two blocks. It bears yield √(1 − (N/N_y)²) with the force N of the
+/// bar, frozen while a step is minimized.
+///
+/// Events: a spring whose yielded elongation passes `rupture` breaks for good, and its dowel with it. While the stage that installs a spring with
+/// pretension lasts, p is such that each step begins with that force; what a jack does then is input.
 class PointSprings final : public Coupling, public StagedSupports {
  public:
-  /// points: two for each spring, its first end and its second.
-  PointSprings(std::vector<PointSpring> springs, std::vector<MaterialPoint> points)
-      : springs_(std::move(springs)), points_(std::move(points)) {}
+  /// points: two for each spring, its first end and its second. drawn: likewise, where it is drawn from and to; empty: at its ends.
+  PointSprings(std::vector<PointSpring> springs, std::vector<MaterialPoint> points,
+               std::vector<MaterialPoint> drawn = {})
+      : springs_(std::move(springs)),
+        points_(std::move(points)),
+        drawn_(std::move(drawn)),
+        has_events_(std::ranges::any_of(springs_, &PointSpring::has_events)) {}
 
   /// A spring as it is.
   struct Now {
@@ -51,14 +78,17 @@ class PointSprings final : public Coupling, public StagedSupports {
 
   [[nodiscard]] std::span<const MaterialPoint> points() const override { return points_; }
   void add_pairs(BlockPairs& pairs) const override;
-  [[nodiscard]] std::size_t memory_size() const override { return 3 * springs_.size(); }
+  [[nodiscard]] std::size_t memory_size() const override { return (has_events_ ? 5 : 3) * springs_.size(); }
 
   [[nodiscard]] std::size_t rows() const override { return springs_.size(); }
   RowFacts build(const Model& model, const State& state, const Drive& drive, std::span<const double> memory,
                  CouplingRows out) const override;
+  void change_laws(const StepProblem& problem, std::size_t first, std::span<const double> memory,
+                   std::vector<LawChange>& changes) const override;
   [[nodiscard]] const StagedSupports* staged_supports() const override { return this; }
   void install(const Model& model, const State& state, std::span<const std::uint8_t> now,
                std::span<double> memory) const override;
+  void end_stage(const Model& model, const State& state, std::span<double> memory) const override;
   CouplingTotals account(const Attempt& attempt, std::span<const double> spin, std::size_t first,
                          std::span<double> memory, State& state) const override;
   [[nodiscard]] double stored_energy(const Model& model, const State& state, double time,
@@ -69,30 +99,73 @@ class PointSprings final : public Coupling, public StagedSupports {
   void add_rounding_forces(const Model& model, double extent, std::span<double> force) const override;
 
  private:
+  /// Where a spring acts: along which direction, and how long it is.
+  struct Line {
+    Vec2 along;           ///< of length 1; zero: it has none
+    double length = 0.0;  ///< m; of a dowel across its bar, with its sign
+  };
+  /// A spring at the end of a step.
+  struct End {
+    double force = 0.0;   ///< N per thickness
+    double beyond = 0.0;  ///< m, yielded in the step
+  };
+
   [[nodiscard]] const MaterialPoint& end(std::size_t k, std::size_t which) const {
     return points_[2 * k + which];
   }
-  [[nodiscard]] bool is_there(const Model& model, const State& state, std::size_t k) const;
+  [[nodiscard]] bool is_there(const Model& model, const State& state, std::size_t k,
+                              std::span<const double> memory) const;
   /// N/m, which a program that steers the run may have changed.
   [[nodiscard]] double stiffness_of(const Model& model, std::size_t k) const {
     return model.spring_stiffness.empty() ? springs_[k].stiffness : model.spring_stiffness[k];
   }
   [[nodiscard]] double force_of(const Model& model, std::size_t k, double stretch) const {
-    return std::clamp(stiffness_of(model, k) * stretch, -springs_[k].yield, springs_[k].yield);
+    return std::clamp(stiffness_of(model, k) * stretch, springs_[k].least(), springs_[k].yield);
   }
-  /// Place in the memory, of what a spring has yielded.
+  /// J per thickness.
+  [[nodiscard]] double energy_of(const Model& model, std::size_t k, double stretch) const {
+    return springs_[k].pulls_only && stretch < 0.0 ? 0.0 : 0.5 * stiffness_of(model, k) * stretch * stretch;
+  }
+  /// N per thickness, of a dowel whose bar has this force.
+  [[nodiscard]] double strength_across(std::size_t k, double along) const;
+  [[nodiscard]] End end_of(const StepProblem& problem, std::size_t first, std::size_t k, double before) const;
+  /// Whether it broke in the step at hand.
+  [[nodiscard]] bool breaks(const SpringArray& rows, std::size_t first, std::size_t k) const {
+    return rows.bound[first + bar_of(k)] == 0.0;
+  }
+  /// The spring itself, or the bar of a dowel.
+  [[nodiscard]] std::size_t bar_of(std::size_t k) const {
+    return springs_[k].across < 0 ? k : static_cast<std::size_t>(springs_[k].across);
+  }
+
+  // Places in the memory, after p: of what a spring has yielded; of its length when it was installed over that without force; whether it is
+  // broken; whether it has pretension that is held.
   [[nodiscard]] std::size_t yielded(std::size_t k) const { return springs_.size() + k; }
-  /// Likewise, of its length when it was installed over that without force.
   [[nodiscard]] std::size_t installed(std::size_t k) const { return 2 * springs_.size() + k; }
-  /// From the second end to the first, m.
-  [[nodiscard]] Vec2 chord(const Model& model, const State& state, std::size_t k) const;
+  [[nodiscard]] std::size_t broken(std::size_t k) const { return 3 * springs_.size() + k; }
+  [[nodiscard]] std::size_t held(std::size_t k) const { return 4 * springs_.size() + k; }
+  [[nodiscard]] bool is_broken(std::size_t k, std::span<const double> memory) const {
+    return has_events_ && memory[broken(bar_of(k))] != 0.0;
+  }
+  [[nodiscard]] bool is_held(std::size_t k, std::span<const double> memory) const {
+    return has_events_ && memory[held(k)] != 0.0;
+  }
+
+  [[nodiscard]] Line line_of(const Model& model, const State& state, std::size_t k) const;
   /// m, that has not yielded, of a spring of this length.
-  [[nodiscard]] double stretch_of(std::size_t k, double length, std::span<const double> memory) const {
-    return length - springs_[k].length() - memory[k];
+  [[nodiscard]] double stretch_of(const Model& model, std::size_t k, double length,
+                                  std::span<const double> memory) const {
+    return is_held(k, memory) ? springs_[k].pretension / stiffness_of(model, k)
+                              : length - springs_[k].length() - memory[k];
+  }
+  [[nodiscard]] double stretch_of(const Model& model, const State& state, std::size_t k,
+                                  std::span<const double> memory) const {
+    return stretch_of(model, k, line_of(model, state, k).length, memory);
   }
 
   std::vector<PointSpring> springs_;
-  std::vector<MaterialPoint> points_;
+  std::vector<MaterialPoint> points_, drawn_;
+  bool has_events_ = false;
 };
 
 }  // namespace keyblock::dynamics

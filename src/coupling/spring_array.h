@@ -17,10 +17,10 @@ namespace keyblock::dynamics {
 /// The springs of all contacts of a step (contact::Spring), by component: what an open-close iteration reads of them and how far they
 /// are stretched. Normal and shear spring of contact c give
 ///
-///     N = clamp(k_n y, low, ∞)          T = clamp(k_s w, ±bound)
+///     N = clamp(k_n y, low, ∞)          T = clamp(k_s w, least, bound)
 ///
-/// with penetration y and shear displacement w; low is 0, and −∞ for a bond, which also pulls. Their branches and lines are those of
-/// contact::ClampedSpring. Where rows share the pressure of faces, N has that beside it (`faces`).
+/// with penetration y and shear displacement w; low is 0, and −∞ for a bond, which also pulls; least is −bound, and of a row of another
+/// coupling any number of at most 0. Their branches and lines are those of contact::ClampedSpring. Where rows share the pressure of faces, N has that beside it (`faces`).
 class SpringArray {
  public:
   enum class Shear : std::int8_t { backward = -1, held = 0, forward = 1, none = 2 };
@@ -45,7 +45,7 @@ class SpringArray {
   void resize(std::size_t n) {
     size_ = n;
     for (std::vector<double>* v :
-         {&kn, &ks, &bound, &low, &friction, &constant, &y0, &w0, &slipped, &y, &w, &dy, &dw})
+         {&kn, &ks, &bound, &least, &low, &friction, &constant, &y0, &w0, &slipped, &y, &w, &dy, &dw})
       v->resize(n + lane_count);  // as many as there are lanes can be loaded anywhere
     branch.resize(n);
     if (!faces.empty()) faces.begin(0);
@@ -56,13 +56,14 @@ class SpringArray {
   /// A row of a coupling other than contacts, at D = 0. Both springs push and pull; 0: there is none.
   struct TwoSided {
     double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< N/m per thickness
-    double largest_shear = 0.0;                            ///< N per thickness
+    double least_shear = 0.0, largest_shear = 0.0;         ///< N per thickness; least ≤ 0 ≤ largest
     double normal = 0.0, shear = 0.0;                      ///< m, y₀ and w₀
   };
   void set_row(std::size_t c, const TwoSided& row) {
     kn[c] = row.normal_stiffness;
     ks[c] = row.shear_stiffness;
-    set_law(c, row.largest_shear, true);
+    set_limits(c, row.least_shear, row.largest_shear);
+    low[c] = -HUGE_VAL;
     friction[c] = -1.0;
     constant[c] = slipped[c] = 0.0;
     y0[c] = y[c] = row.normal;
@@ -72,21 +73,27 @@ class SpringArray {
 
   /// tensile: a bond, which pulls.
   void set_law(std::size_t c, double largest_shear, bool tensile) {
-    bound[c] = largest_shear;
+    set_bound(c, largest_shear);
     low[c] = tensile ? -HUGE_VAL : 0.0;
+  }
+  void set_bound(std::size_t c, double largest_shear) { set_limits(c, -largest_shear, largest_shear); }
+  /// Of the shear spring; where the largest is 0 there is none.
+  void set_limits(std::size_t c, double least_shear, double largest_shear) {
+    least[c] = least_shear;
+    bound[c] = largest_shear;
   }
   [[nodiscard]] bool is_tensile(std::size_t c) const { return low[c] < 0.0; }
 
   using Law = contact::ClampedSpring<double>;
   using LawLanes = contact::ClampedSpring<Lanes>;
   [[nodiscard]] Law normal_law(std::size_t c) const { return {kn[c], low[c], HUGE_VAL}; }
-  [[nodiscard]] Law shear_law(std::size_t c) const { return contact::shear_spring(ks[c], bound[c]); }
+  [[nodiscard]] Law shear_law(std::size_t c) const { return {ks[c], least[c], bound[c]}; }
   /// Of as many rows as there are lanes, from c on.
   [[nodiscard]] LawLanes normal_laws(std::size_t c) const {
     return {load(&kn[c]), load(&low[c]), broadcast(HUGE_VAL)};
   }
   [[nodiscard]] LawLanes shear_laws(std::size_t c) const {
-    return contact::shear_spring(load(&ks[c]), load(&bound[c]));
+    return {load(&ks[c]), load(&least[c]), load(&bound[c])};
   }
   /// N per thickness, the bound of shear by Coulomb's law where the normal spring presses with `normal`.
   [[nodiscard]] double strength(std::size_t c, double normal) const {
@@ -195,10 +202,11 @@ class SpringArray {
   void press_faces() { faces.press(y); }
   /// On the straight line that goes on from a branch.
   [[nodiscard]] Force force_on(std::size_t c, Branch p, double penetration, double displacement) const {
-    return {p.closed ? kn[c] * penetration : 0.0, p.shear == Shear::held ? ks[c] * displacement
-                                                  : p.shear == Shear::none
-                                                      ? 0.0
-                                                      : static_cast<int>(p.shear) * bound[c]};
+    const double shear = p.shear == Shear::held      ? ks[c] * displacement
+                         : p.shear == Shear::none    ? 0.0
+                         : p.shear == Shear::forward ? bound[c]
+                                                     : least[c];
+    return {p.closed ? kn[c] * penetration : 0.0, shear};
   }
   /// Stiffness of a branch.
   [[nodiscard]] double normal_stiffness(std::size_t c, Branch p) const { return p.closed ? kn[c] : 0.0; }
@@ -206,9 +214,9 @@ class SpringArray {
     return p.shear == Shear::held ? ks[c] : 0.0;
   }
 
-  std::vector<double> kn, ks;      ///< N/m per thickness
-  std::vector<double> bound, low;  ///< N per thickness, largest |T| and least N
-  std::vector<double> friction;    ///< μ; −1: the bound is not Coulomb's
+  std::vector<double> kn, ks;             ///< N/m per thickness
+  std::vector<double> bound, least, low;  ///< N per thickness, largest T, least T and least N
+  std::vector<double> friction;           ///< μ; −1: the bound is not Coulomb's
   /// N per thickness, of the bound μN + this: the cohesion of a bond, the friction that a contact owes.
   std::vector<double> constant;
   std::vector<double> y0, w0;   ///< m, at D = 0

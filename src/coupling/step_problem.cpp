@@ -29,6 +29,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   is_static_ = drive.is_static;
   if (model_ != &model) points_.begin(model);
   model_ = &model;
+  state_ = &state;
   terms_.build(model, state, drive, team);
   parts_.clear();
   std::size_t rows = 0;
@@ -47,8 +48,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   std::size_t first_point = 0;
   for (std::size_t k = 0; k < parts_.size(); ++k) {
     const auto [coupling, first] = parts_[k];
-    const std::span<const double> memory = k == 0 ? std::span<const double>() : state.couplings[k - 1];
-    facts_ |= coupling->build(model, state, drive, memory,
+    facts_ |= coupling->build(model, state, drive, memory(k),
                               {first, first_point, std::span(rows_).subspan(first, coupling->rows()),
                                springs_, points_, owners_, team});
     first_point += coupling->points().size();

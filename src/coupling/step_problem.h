@@ -51,6 +51,12 @@ class StepProblem {
   /// H, b and what residuals are measured by: of blocks, loads and supports.
   [[nodiscard]] const BlockTerms& terms() const { return terms_; }
   [[nodiscard]] const Model& model() const { return *model_; }
+  /// At the start of the step.
+  [[nodiscard]] const State& state() const { return *state_; }
+  /// What part k of parts() remembers.
+  [[nodiscard]] std::span<const double> memory(std::size_t k) const {
+    return k == 0 ? std::span<const double>() : state_->couplings[k - 1];
+  }
   [[nodiscard]] bool is_static() const { return is_static_; }
 
   /// u of increment D, m, at every point (Points).
@@ -124,6 +130,7 @@ class StepProblem {
                   linalg::BlockSolver& solver) const;
 
   const Model* model_ = nullptr;
+  const State* state_ = nullptr;
   ThreadTeam* team_ = nullptr;
   std::vector<Part> parts_;
   BlockTerms terms_;

@@ -90,7 +90,7 @@ void ForceBalance::take_bounds(StepProblem& problem) {
   SpringArray& springs = problem.springs();
   for (std::size_t c = 0; c < springs.size(); ++c) {
     if (springs.friction[c] < 0.0) continue;
-    springs.bound[c] = springs.strength(c, springs.bearing(c));
+    springs.set_bound(c, springs.strength(c, springs.bearing(c)));
   }
 }
 

@@ -33,11 +33,13 @@ Complex force_of(const std::array<std::array<double, 4>, 3>& rule, Complex grows
   return determinant(system) / all;
 }
 
-/// λ − 1 of an oscillation with Ω = ω Δt, F = −Ω² for a displacement of 1, near a guess: by the secant method.
-Complex root(const std::array<std::array<double, 4>, 3>& rule, double omega, Complex guess) {
+/// λ − 1 of an oscillation with Ω = ω Δt, F = −Ω² for a displacement of 1 at a share of the step, near a guess: by the secant method.
+Complex root(const std::array<std::array<double, 4>, 3>& rule, double omega, double place, Complex guess) {
   constexpr int most = 60;
   constexpr double exact = 1e-15;
-  const auto missing = [&](Complex grows) { return force_of(rule, grows) + omega * omega; };
+  const auto missing = [&](Complex grows) {
+    return force_of(rule, grows) + omega * omega * (1.0 - (1.0 - place) * grows / (1.0 + grows));
+  };
   Complex last = guess, grows = guess * (1.0 + 0.01 * omega), missing_last = missing(last);
   for (int k = 0; k < most && std::abs(grows - last) > exact * std::abs(grows); ++k) {
     const Complex now = missing(grows), slope = now - missing_last;
@@ -50,9 +52,9 @@ Complex root(const std::array<std::array<double, 4>, 3>& rule, double omega, Com
   return grows;
 }
 
-}  // namespace
-
-double numerical_damping(const Integrator& rule, double step, double frequency) {
+/// place_of: of Ω², the share of the step at which forces are taken.
+template <typename PlaceOf>
+double damping_of(const Integrator& rule, double step, double frequency, const PlaceOf& place_of) {
   const Motion start{lanes_from(1, 0, 0, 0, 0, 0, 0, 0), lanes_from(0, 1, 0, 0, 0, 0, 0, 0),
                      lanes_from(0, 0, 1, 0, 0, 0, 0, 0)};
   const Motion end = rule.end(start, lanes_from(0, 0, 0, 1, 0, 0, 0, 0), 1.0);
@@ -69,13 +71,24 @@ double numerical_damping(const Integrator& rule, double step, double frequency) 
   const int stretches = std::max(1, static_cast<int>(std::ceil(omega / stretch)));
   Complex grows = Complex(-0.5, 1.0) * (omega / stretches);
   for (int k = 1; k <= stretches; ++k) {
-    grows = root(columns, omega * k / stretches, grows);
+    const double now = omega * k / stretches;
+    grows = root(columns, now, place_of(now * now), grows);
     const double log_size = 0.5 * std::log1p(2.0 * grows.real() + std::norm(grows)),
                  turn = std::abs(std::atan2(grows.imag(), 1.0 + grows.real()));
     if (!(turn > no_turn * omega) || !std::isfinite(log_size)) return 1.0;
     if (k == stretches) return std::max(-log_size / std::hypot(log_size, turn), 0.0);
   }
   return 1.0;
+}
+
+}  // namespace
+
+double numerical_damping(const Integrator& rule, double step, double frequency) {
+  return damping_of(rule, step, frequency, [](double /*ratio*/) { return 1.0; });
+}
+
+double numerical_damping_of_spring(const Integrator& rule, double step, double frequency) {
+  return damping_of(rule, step, frequency, [&](double ratio) { return rule.place_of_spring(ratio); });
 }
 
 }  // namespace keyblock::dynamics

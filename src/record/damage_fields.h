@@ -53,6 +53,13 @@ inline constexpr DamageField<int> damage_counts[] = {
      &Damage::yielded_elements,
      {""},
      {DamageTable::elements, "Have reached their limit"},
+     "largest_utilization"},
+    {"ruptured_elements",
+     "elements that have broken",
+     "",
+     &Damage::ruptured_elements,
+     {""},
+     {DamageTable::elements, "Have broken"},
      "largest_utilization"}};
 
 inline constexpr ShownUnit in_millimetres{"mm", 1e3}, in_kilonewtons{"kN/m", 1e-3},

@@ -72,6 +72,10 @@ struct ElementRecord {
   double peak_force = 0.0;                 ///< N per thickness, its size
   double peak_time = 0.0;                  ///< s
   double limit = std::numeric_limits<double>::infinity();  ///< N per thickness; infinite: none
+  /// m out of plane, of which a section has one, and N, of one: the force, and the largest in the run. Infinite: it goes on through the section.
+  double spacing = std::numeric_limits<double>::infinity();
+  double force_of_one = spacing, peak_force_of_one = spacing;
+  bool ruptured = false;
 
   /// Largest force over the limit; 0 without one.
   [[nodiscard]] double utilization() const { return peak_force / limit; }
@@ -84,9 +88,14 @@ struct ElementField {
   const char* unit;
   double ElementRecord::*number;
 };
-inline constexpr ElementField element_fields[] = {
-    {"force_n_m", "N/m", &ElementRecord::force},     {"elongation_m", "m", &ElementRecord::elongation},
-    {"yielded_m", "m", &ElementRecord::yielded},     {"peak_force_n_m", "N/m", &ElementRecord::peak_force},
-    {"peak_time_s", "s", &ElementRecord::peak_time}, {"limit_n_m", "N/m", &ElementRecord::limit}};
+inline constexpr ElementField element_fields[] = {{"force_n_m", "N/m", &ElementRecord::force},
+                                                  {"elongation_m", "m", &ElementRecord::elongation},
+                                                  {"yielded_m", "m", &ElementRecord::yielded},
+                                                  {"peak_force_n_m", "N/m", &ElementRecord::peak_force},
+                                                  {"peak_time_s", "s", &ElementRecord::peak_time},
+                                                  {"limit_n_m", "N/m", &ElementRecord::limit},
+                                                  {"spacing_m", "m", &ElementRecord::spacing},
+                                                  {"force_n", "N", &ElementRecord::force_of_one},
+                                                  {"peak_force_n", "N", &ElementRecord::peak_force_of_one}};
 
 }  // namespace keyblock::record

@@ -254,6 +254,7 @@ struct Damage {
   /// Since the start of the run: elements that have reached their limit, and the largest force over the limit of its element; NaN where no
   /// element has a limit.
   int yielded_elements = 0;
+  int ruptured_elements = 0;  ///< that have broken
   double largest_utilization = 0.0;
 };
 

@@ -72,6 +72,7 @@ ordered_json elements_json(const std::vector<ElementRecord>& elements, Vec2 orig
     one["peak_stage"] = e.peak_stage.empty() ? ordered_json() : ordered_json(e.peak_stage);
     one["utilization"] = std::isfinite(e.limit) ? ordered_json(e.utilization()) : ordered_json();
     one["has_yielded"] = e.has_yielded();
+    one["has_ruptured"] = e.ruptured;
     json.push_back(std::move(one));
   }
   return json;
@@ -106,6 +107,7 @@ std::vector<ElementRecord> read_elements(const ordered_json& json) {
     e.name = one.at("name").get<std::string>();
     e.kind = one.at("kind").get<std::string>();
     one.at("present").get_to(e.present);
+    one.at("has_ruptured").get_to(e.ruptured);
     e.from = read_place(one.at("from"));
     e.to = read_place(one.at("to"));
     for (const auto& field : element_fields) {

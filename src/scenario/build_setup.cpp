@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenario/bolts.h"
 #include "scenario/build.h"
 #include "scenario/closure_bound.h"
 #include "scenario/dynamic_checks.h"
@@ -61,7 +62,8 @@ std::optional<block::InSituStress> in_situ_stress(const Scenario& scenario, doub
 }
 
 // What acts at points is moved into local coordinates.
-void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
+void place_loading(const Scenario& scenario, const BlockModel& blocks, RunSetup& setup) {
+  const Vec2 origin = setup.system.origin;
   setup.loads = scenario.loads;
   for (loading::Load& load : setup.loads) {
     load.from -= origin;
@@ -80,15 +82,22 @@ void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
     spring.from -= origin;
     spring.to -= origin;
   }
+  setup.bolts = bolts_of(scenario, blocks.outlines);
+  for (loading::Bolt& bolt : setup.bolts) {
+    bolt.head -= origin;
+    bolt.toe -= origin;
+  }
   // What a stage installs that is left out never comes to life.
   for (const auto* stages : {&scenario.stages, &scenario.left_out})
     for (const record::Stage& stage : *stages)
       setup.staged_supports.insert(setup.staged_supports.end(), stage.install.begin(), stage.install.end());
-  for (loading::Spring& spring : setup.springs) {
-    const auto place = std::ranges::find(setup.staged_supports, spring.name);
-    if (place != setup.staged_supports.end())
-      spring.staged = static_cast<int>(place - setup.staged_supports.begin());
-  }
+  const auto staged = [&](const std::string& name) {
+    const auto place = std::ranges::find(setup.staged_supports, name);
+    return place == setup.staged_supports.end() ? -1
+                                                : static_cast<int>(place - setup.staged_supports.begin());
+  };
+  for (loading::Spring& spring : setup.springs) spring.staged = staged(spring.name);
+  for (loading::Bolt& bolt : setup.bolts) bolt.staged = staged(bolt.list);
 }
 
 /// Rock far away goes from the base to the ground beside its side.
@@ -301,7 +310,6 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.scenario = scenario.text;
 
   place_rock(scenario, blocks, setup);
-  const Vec2 origin = setup.system.origin;
   setup.stages = scenario.stages;
   setup.solver = scenario.solver;
   setup.boundary = boundary_of(scenario);
@@ -320,9 +328,10 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
     setup.ground.emplace_back("joints in the model, of their length", std::move(joints));
   for (auto& fact : strength_facts(setup.joints)) setup.ground.push_back(std::move(fact));
   for (auto& fact : boundary_facts(setup)) setup.ground.push_back(std::move(fact));
-  place_loading(scenario, origin, setup);
+  place_loading(scenario, blocks, setup);
   place_histories(scenario, setup, notes);
   check_springs(scenario, setup, notes);
+  check_bolts(scenario, setup, notes);
   if (auto mistakes = stage_mistakes(scenario, setup.motions); !mistakes.empty())
     throw InputError(std::move(mistakes));
   if (auto mistakes = dynamic_mistakes(scenario, setup); !mistakes.empty())

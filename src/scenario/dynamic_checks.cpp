@@ -110,7 +110,7 @@ class DampedSprings {
       const simulation::SpringBlocks blocks = simulation::spring_blocks(setup, k);
       const loading::Spring& spring = setup.springs[k];
       see(join_element("spring", spring.name, k), spring.stiffness,
-          slowness(blocks.from) + slowness(blocks.to));
+          slowness(blocks.from) + slowness(blocks.to), dynamics::numerical_damping_of_spring);
     }
     for (std::size_t k = 0; k < setup.supports.size(); ++k) see_support(k);
   }
@@ -137,16 +137,18 @@ class DampedSprings {
     const double length = support.is_edge ? norm(support.points.back() - support.points.front())
                                           : static_cast<double>(support.points.size());
     see(join_element("support", support.name, k), *support.stiffness * length,
-        slowness(static_cast<std::size_t>(block - setup_.properties.begin())));
+        slowness(static_cast<std::size_t>(block - setup_.properties.begin())), dynamics::numerical_damping);
   }
-  void see(const std::string& path, double stiffness, double slowness) {
+  using Damping = double (*)(const dynamics::Integrator&, double, double);
+  void see(const std::string& path, double stiffness, double slowness, Damping damping) {
     if (!(stiffness > 0.0) || !(slowness > 0.0)) return;
     const double frequency = std::sqrt(stiffness * slowness) / (2.0 * std::numbers::pi),
-                 share = dynamics::numerical_damping(rule_, setup_.time_step, frequency);
+                 share = damping(rule_, setup_.time_step, frequency);
     count_ += share > most_share ? 1 : 0;
     if (share <= worst_) return;
     worst_ = share;
     frequency_ = frequency;
+    damping_ = damping;
     path_ = path;
   }
   [[nodiscard]] const char* name() const {
@@ -163,8 +165,7 @@ class DampedSprings {
   /// The longest step by halves that leaves it be, and the rule that does.
   [[nodiscard]] std::string advice() const {
     double step = setup_.time_step;
-    for (int k = 0; k < 20 && dynamics::numerical_damping(rule_, step, frequency_) > good_share; ++k)
-      step *= 0.5;
+    for (int k = 0; k < 20 && damping_(rule_, step, frequency_) > good_share; ++k) step *= 0.5;
     const char* other = setup_.solver.integrator == dynamics::TimeIntegration::generalized_alpha
                             ? ""
                             : "integrator = \"generalized-alpha\", or ";
@@ -174,6 +175,7 @@ class DampedSprings {
   const RunSetup& setup_;
   dynamics::Integrator rule_;
   double worst_ = 0.0, frequency_ = 0.0;
+  Damping damping_ = dynamics::numerical_damping;
   int count_ = 0;
   std::string path_;
 };

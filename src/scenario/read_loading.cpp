@@ -294,6 +294,7 @@ void read_loading(TableReader& root, Scenario& scenario) {
                   "installs it. It turns with the line between its ends. It ends where a block of it is "
                   "excavated."},
       [&](TableReader& t, Spring& spring) { read_spring(t, spring, scenario); });
+  read_bolts(root, scenario);
 }
 
 }  // namespace keyblock::scenario

@@ -36,14 +36,26 @@ void check_excavated_once(TableReader& t, const Stage& stage, const Scenario& sc
   }
 }
 
-/// Supports of all kinds: today springs.
+/// A force that is held while the rock comes to rest.
+void check_pretension(TableReader& t, const Stage& stage, const Scenario& scenario) {
+  if (stage.kind == StageKind::settle) return;
+  for (const BoltSpec& spec : scenario.bolts) {
+    if (spec.bolt.pretension > 0.0 && std::ranges::find(stage.install, spec.bolt.list) != stage.install.end())
+      t.fail("install", fmt::format("\"{}\", which has pretension", spec.bolt.list),
+             "a stage of kind \"settle\" that installs it");
+  }
+}
+
+/// Supports of all kinds: springs and bolts.
 void read_install(TableReader& t, Stage& stage, const Scenario& scenario) {
-  std::vector<int> springs;
-  t.references("install", springs, "spring",
+  std::vector<int> supports;
+  t.references("install", supports, names_of_supports,
                {.meaning = "Supports that come to life at the start of the stage, after what it excavates: "
-                           "springs by their names. They have no force as the rock lies then, and carry what "
-                           "comes later. Before, they are not there."});
-  for (const int k : springs) stage.install.push_back(scenario.springs[static_cast<std::size_t>(k)].name);
+                           "springs and bolts by their names. They have no force as the rock lies then, but "
+                           "pretension, and carry what comes later. Before, they are not there."});
+  const std::vector<std::string>& names = t.context().list_names[std::string(names_of_supports)];
+  for (const int k : supports) stage.install.push_back(names[static_cast<std::size_t>(k)]);
+  check_pretension(t, stage, scenario);
   for (const Stage& before : scenario.stages) {
     for (const std::string& name : before.install) {
       if (std::find(stage.install.begin(), stage.install.end(), name) == stage.install.end()) continue;

@@ -195,6 +195,16 @@ struct SafetySpec {
   int max_steps = 6000;
 };
 
+/// [[bolt]]: a bolt, or a pattern along the outline of an excavation.
+struct BoltSpec {
+  loading::Bolt bolt;   ///< head and toe: of a single one
+  int excavation = -1;  ///< −1: a single one
+  double length = 0.0;  ///< m, of each of a pattern
+  std::optional<int> count;
+  std::optional<double> spacing_along;           ///< m
+  std::optional<std::pair<double, double>> arc;  ///< degrees about the centroid of the outline, from +x
+};
+
 struct MotionComponentSpec {
   std::filesystem::path file;
   std::optional<int> channel;  ///< component of a file that holds several, counted from 1
@@ -265,6 +275,7 @@ struct Scenario {
   std::vector<loading::Load> loads;
   std::vector<loading::Support> supports;
   std::vector<loading::Spring> springs;
+  std::vector<BoltSpec> bolts;
   std::vector<WaterSpec> waters;
   std::vector<simulation::History> histories;
   std::vector<record::Stage> stages;    ///< indices are those of `excavations` and `motions`

@@ -39,6 +39,8 @@ void read_shapes(TableReader& root, Scenario& scenario);
 void read_boundary(TableReader& root, Scenario& scenario);
 /// [in_situ], [[motion]], [[load]], [[support]], [[spring]].
 void read_loading(TableReader& root, Scenario& scenario);
+/// [[bolt]], and the names of all that stages install.
+void read_bolts(TableReader& root, Scenario& scenario);
 /// [water], after all joints.
 void read_water(TableReader& root, Scenario& scenario);
 /// `water` of a stage.

@@ -91,6 +91,7 @@ constexpr Synonym all_synonyms[] = {
     {"pressure", "traction"},
     {"supports", "support"},
     {"springs", "spring"},
+    {"bolts rockbolt rockbolts anchor anchors cable cables dowel dowels", "bolt"},
     {"loads", "load"},
     {"hist monitor", "history", true},
     {"damp rayleigh rayleighdamping dampingratio", "damping"},
@@ -110,10 +111,6 @@ constexpr Synonym all_synonyms[] = {
 };
 
 constexpr Explanation all_explanations[] = {
-    {"bolt bolts rockbolt rockbolts anchor anchors cable cables dowel dowels",
-     "a [[spring]] between points of two blocks is an anchor, with its stiffness and yield; bolts that rock "
-     "holds "
-     "along their length, and dowels, are not in the program"},
     {"liner liners lining linings shotcrete beam beams struct steelset steelsets",
      "linings and beams are not in the program"},
     {"flow seepage permeability conductivity aperture",

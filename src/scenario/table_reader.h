@@ -48,6 +48,8 @@ struct Word {
 
 /// Not the key of a list: names of joint sets, trace maps and interfaces, after `joints`, which stands for all joints that are of none.
 inline constexpr std::string_view names_of_joints = "joints";
+/// Likewise: names of all that a stage may install.
+inline constexpr std::string_view names_of_supports = "supports";
 
 /// What is gathered while a document is read.
 struct ReadContext {

@@ -12,6 +12,7 @@
 #include "coupling/ground_springs.h"
 #include "coupling/point_springs.h"
 #include "geometry/quadrature.h"
+#include "simulation/build_bolts.h"
 #include "simulation/build_boundary.h"
 #include "simulation/build_water.h"
 #include "simulation/joint_laws.h"
@@ -160,22 +161,25 @@ void add_supports(const RunSetup& setup, Model& model) {
 }
 
 void add_springs(const RunSetup& setup, Model& model) {
-  std::vector<dynamics::PointSpring> springs;
-  std::vector<dynamics::MaterialPoint> points;
+  BoltSprings all;
   for (std::size_t k = 0; k < setup.springs.size(); ++k) {
     const loading::Spring& spring = setup.springs[k];
     const auto [a, b] = spring_blocks(setup, k);
     for (const auto& [block, p] : {std::pair(a, spring.from), std::pair(b, spring.to)}) {
-      dynamics::MaterialPoint& point = points.emplace_back(dynamics::MaterialPoint{
-          static_cast<int>(block), std::vector<double>(at(model.blocks[block].size))});
-      model.blocks[block].basis.evaluate(p, point.phi.data());
+      all.points.push_back(material_point(model, block, p));
+      all.drawn.push_back(all.points.back());
     }
-    springs.push_back({spring.name.empty() ? fmt::format("spring[{}]", k) : spring.name, spring.stiffness,
-                       spring.yield.value_or(HUGE_VAL), spring.from, spring.to, spring.staged});
+    all.springs.push_back({.name = spring.name.empty() ? fmt::format("spring[{}]", k) : spring.name,
+                           .stiffness = spring.stiffness,
+                           .yield = spring.yield.value_or(HUGE_VAL),
+                           .from = spring.from,
+                           .to = spring.to,
+                           .staged = spring.staged});
   }
-  if (!springs.empty())
-    model.couplings.push_back(
-        std::make_shared<dynamics::PointSprings>(std::move(springs), std::move(points)));
+  add_bolts(setup, model, all);
+  if (!all.springs.empty())
+    model.couplings.push_back(std::make_shared<dynamics::PointSprings>(
+        std::move(all.springs), std::move(all.points), std::move(all.drawn)));
 }
 
 /// In an order that stays the same: State::couplings is in it.

@@ -125,9 +125,9 @@ std::vector<SpringNow> Control::springs() const {
   if (springs == nullptr) return all;
   const auto now = springs->now(model_, state_, state_.couplings[place]);
   for (std::size_t k = 0; k < now.size(); ++k)
-    all.push_back({k < setup_.springs.size() ? setup_.springs[k].name : "", now[k].from, now[k].to,
-                   now[k].length, now[k].stiffness, now[k].force, springs->springs()[k].yield,
-                   now[k].is_there});
+    all.push_back({k < setup_.springs.size() ? setup_.springs[k].name : springs->springs()[k].name,
+                   now[k].from, now[k].to, now[k].length, now[k].stiffness, now[k].force,
+                   springs->springs()[k].yield, now[k].is_there});
   return all;
 }
 

@@ -37,8 +37,12 @@ std::size_t element_count(const Model& model) {
   return count;
 }
 
-void measure_elements(const Model& model, const std::vector<ElementPeak>& peaks, record::Damage& damage) {
-  damage.yielded_elements = 0;
+void measure_elements(const Model& model, const State& state, const std::vector<ElementPeak>& peaks,
+                      record::Damage& damage) {
+  damage.yielded_elements = damage.ruptured_elements = 0;
+  for_carried(model, state, [&](const auto& /*coupling*/, const std::vector<Carried>& carried) {
+    damage.ruptured_elements += static_cast<int>(std::ranges::count(carried, true, &Carried::ruptured));
+  });
   damage.largest_utilization = std::nan("");
   const std::vector<record::ElementDescription> all = element_descriptions(model);
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -110,6 +114,7 @@ std::vector<record::ElementRecord> element_records(const Model& model, const Sta
     for (std::size_t i = 0; i < elements.size(); ++i) {
       const Carried& now = carried[i];
       const ElementPeak peak = records.size() < peaks.size() ? peaks[records.size()] : ElementPeak{};
+      const double spacing = elements[i].spacing;
       records.push_back(
           {.name = elements[i].name,
            .kind = elements[i].kind,
@@ -122,7 +127,11 @@ std::vector<record::ElementRecord> element_records(const Model& model, const Sta
            .yielded = now.yielded,
            .peak_force = peak.force,
            .peak_time = peak.time,
-           .limit = elements[i].limit});
+           .limit = elements[i].limit,
+           .spacing = spacing > 0.0 ? spacing : HUGE_VAL,
+           .force_of_one = spacing > 0.0 ? now.force * spacing : HUGE_VAL,
+           .peak_force_of_one = spacing > 0.0 ? peak.force * spacing : HUGE_VAL,
+           .ruptured = now.ruptured});
     }
   });
   return records;

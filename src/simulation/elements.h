@@ -27,8 +27,8 @@ std::vector<record::ElementRecord> element_records(const dynamics::Model& model,
                                                    const std::vector<ElementPeak>& peaks,
                                                    const std::vector<record::Stage>& stages);
 /// Measures of damage that elements have.
-void measure_elements(const dynamics::Model& model, const std::vector<ElementPeak>& peaks,
-                      record::Damage& damage);
+void measure_elements(const dynamics::Model& model, const dynamics::State& state,
+                      const std::vector<ElementPeak>& peaks, record::Damage& damage);
 std::size_t element_count(const dynamics::Model& model);
 std::vector<record::ElementDescription> element_descriptions(const dynamics::Model& model);
 /// What they carry now, in the same order.

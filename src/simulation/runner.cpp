@@ -358,7 +358,7 @@ void Runner::end_stage() {
   if (record.equilibrium_reached && !is_within_step_)
     record.unstable_block = find_unstable_block(stage_->settler->which_move());
   gauge_.describe(now_.mechanics, record);
-  measure_elements(model_, now_.peaks, record.damage);
+  measure_elements(model_, now_.mechanics, now_.peaks, record.damage);
   record.release = opening_.end_stage(now_.mechanics);
   record.blocks_by_order = blocks_by_order(model_);
   observer_.stage_end(now_.stage, record);

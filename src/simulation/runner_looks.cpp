@@ -9,7 +9,7 @@ std::optional<record::Damage> Runner::damage() const {
   if (!gauge_.started()) return {};
   DamageGauge looking = gauge_;  // a look is remembered
   record::Damage damage = looking.measure(now_.mechanics);
-  measure_elements(model_, now_.peaks, damage);
+  measure_elements(model_, now_.mechanics, now_.peaks, damage);
   return damage;
 }
 

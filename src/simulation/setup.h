@@ -8,6 +8,7 @@
 #include "block/material.h"
 #include "contact/joint_properties.h"
 #include "cutting/block_system.h"
+#include "loading/bolt.h"
 #include "loading/ground_motion.h"
 #include "loading/load.h"
 #include "loading/water_table.h"
@@ -154,6 +155,7 @@ struct RunSetup {
   std::vector<loading::Load> loads;
   std::vector<loading::Support> supports;
   std::vector<loading::Spring> springs;
+  std::vector<loading::Bolt> bolts;
   std::vector<Water> waters;                 ///< of which a stage chooses
   std::vector<std::string> staged_supports;  ///< that stages install: names, in the order of State::installed
   std::vector<record::Stage> stages;

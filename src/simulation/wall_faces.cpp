@@ -5,21 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <span>
 
 #include "contact/tolerances.h"
 #include "core/index.h"
 #include "record/fallen.h"
 #include "simulation/openings.h"
+#include "simulation/outline_arc.h"
 #include "simulation/refuse.h"
 
 namespace keyblock::simulation {
 
 namespace {
-
-/// Shares of an edge.
-using Stretch = std::pair<double, double>;
 
 /// Of an edge from a to b with rock on its left, where it lies on the outline, the rock being outside.
 std::vector<Stretch> on_outline(Vec2 a, Vec2 b, const Ring& outline, const contact::Tolerances& tolerances) {
@@ -51,28 +48,6 @@ std::vector<Stretch> on_outline(Vec2 a, Vec2 b, const Ring& outline, const conta
     }
   }
   return apart;
-}
-
-/// The parts of a stretch of an edge from a to b within an arc about a point.
-std::vector<Stretch> within(const Stretch& stretch, Vec2 a, Vec2 b, Vec2 centre, double from, double to) {
-  constexpr double degree = std::numbers::pi / 180.0;
-  std::vector<double> ends{stretch.first, stretch.second};
-  for (const double angle : {from, to}) {
-    const Vec2 ray{std::cos(angle * degree), std::sin(angle * degree)};
-    const double of_a = cross(ray, a - centre), of_b = cross(ray, b - centre);
-    if ((of_a > 0.0) == (of_b > 0.0)) continue;
-    const double share = of_a / (of_a - of_b);
-    if (share > stretch.first && share < stretch.second) ends.push_back(share);
-  }
-  std::ranges::sort(ends);
-  std::vector<Stretch> parts;
-  for (std::size_t k = 1; k < ends.size(); ++k) {
-    const Vec2 middle = lerp(a, b, 0.5 * (ends[k - 1] + ends[k])) - centre;
-    const double angle = std::atan2(middle.y, middle.x) / degree;
-    const double turned = angle - from - 360.0 * std::floor((angle - from) / 360.0);
-    if (turned <= to - from) parts.emplace_back(ends[k - 1], ends[k]);
-  }
-  return parts;
 }
 
 bool holds(const std::vector<int>& excavations, std::size_t excavation) {
@@ -149,7 +124,7 @@ std::vector<dynamics::WallFace> wall_faces(const RunSetup& setup, const dynamics
       const Vec2 from = model.reference[at(v)], to = model.reference[at(model.surface.next[at(v)])];
       for (const Stretch& stretch : on_outline(from, to, outline, tolerances)) {
         const std::vector<Stretch> parts =
-            arc ? within(stretch, from, to, centre, arc->first, arc->second) : std::vector{stretch};
+            arc ? within_arc(stretch, from, to, centre, *arc) : std::vector{stretch};
         for (const Stretch& part : parts) faces.push_back({v, part.first, part.second});
       }
     }

@@ -32,7 +32,7 @@ class EarlierAttempt {
       if (k == candidates_.size()) break;
       if (candidates_[k] != contacts[c].candidate || contacts[c].memory.bonded) continue;
       springs.set_branch(c, branch_[k]);
-      springs.bound[c] = bound_[k];
+      springs.set_bound(c, bound_[k]);
       if (slipped_[k] == 0.0) springs.hold_from_start(c);
     }
     springs.bounds_updated = bounds_updated_;

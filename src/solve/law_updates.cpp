@@ -42,6 +42,7 @@ void LawUpdates::begin() {
   bound_updates_ = 0;
   bound_error_ = HUGE_VAL;
   bound_damping_ = 1.0;
+  limit_updates_ = 0;
 }
 
 /// N per thickness, per block: what friction holds it with where its contacts slide.
@@ -136,7 +137,7 @@ bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, doubl
     // A bound that was set otherwise since has come to where it is on a way of its own.
     const bool is_known = !first && last.bound == springs.bound[c];
     const double share = bound_damping_ * (is_known ? last.step.share(missing) : 1.0);
-    iterate.change_spring(system, c, [&] { springs.bound[c] += share * missing; });
+    iterate.change_spring(system, c, [&] { springs.set_bound(c, springs.bound[c] + share * missing); });
     last = {{missing, share * missing}, springs.bound[c]};
   }
   return true;
@@ -152,7 +153,7 @@ bool LawUpdates::renew_bonds(const StepSystem& system, Iterate& iterate) {
                  elastic = std::abs(springs.ks[c] * springs.w[c]);
     if (elastic <= std::min(strength, bound) || std::abs(strength - bound) <= settled_strength * bound)
       return false;
-    iterate.change_spring(system, c, [&] { springs.bound[c] = strength; });
+    iterate.change_spring(system, c, [&] { springs.set_bound(c, strength); });
     return true;
   });
 }
@@ -191,6 +192,28 @@ bool LawUpdates::break_bonds(const StepSystem& system, Iterate& iterate) {
     iterate.let_go_of_faces(system, c);
     return true;
   });
+}
+
+bool LawUpdates::change_couplings(const StepSystem& system, Iterate& iterate) {
+  const StepProblem& problem = system.problem;
+  if (!problem.facts().may_change_laws) return false;
+  changes_.clear();
+  for (std::size_t k = 0; k < problem.parts().size(); ++k) {
+    const auto [coupling, first] = problem.parts()[k];
+    coupling->change_laws(problem, first, problem.memory(k), changes_);
+  }
+  std::ranges::stable_sort(changes_, std::ranges::greater{}, &LawChange::excess);
+  const auto limits = std::ranges::find_if(changes_, [](const LawChange& c) { return !(c.excess > 0.0); });
+  const auto events = static_cast<std::size_t>(limits - changes_.begin());
+  // What breaks unloads what is near to it, or loads it: so few at once that those near are asked again.
+  std::size_t count = events == 0 ? 0 : std::max<std::size_t>(1, events / step_numbers::events_at_once);
+  if (events == 0 && limit_updates_++ < step_numbers::most_limit_updates) count = changes_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const LawChange& change = changes_[i];
+    iterate.change_spring(system, change.row,
+                          [&] { system.springs().set_limits(change.row, change.least, change.largest); });
+  }
+  return count > 0;
 }
 
 }  // namespace keyblock::dynamics

@@ -23,6 +23,9 @@ class LawUpdates {
   /// Bonds whose strength is exceeded lose it for good, in the memory of their contacts too: all of it, or where their joint keeps cohesion
   /// (Contact::keeps_cohesion) the tension that is exceeded, or what the joint loses when it slips.
   bool break_bonds(const StepSystem& system, Iterate& iterate);
+  /// What other couplings say of their rows (Coupling::change_laws): of their events those with the largest excess, few at once; where there are
+  /// none, limits that go with other forces, a few times in a step.
+  bool change_couplings(const StepSystem& system, Iterate& iterate);
   /// Coulomb bounds of the normal forces at hand, if that changes the shear forces by more than `tolerance` of the bounds (L2).
   bool update_bounds(const StepSystem& system, Iterate& iterate, double tolerance);
 
@@ -33,6 +36,9 @@ class LawUpdates {
   // Contacts that turn round.
   std::vector<double> sliding_bound_;  ///< N per thickness, per block; scratch
   std::vector<std::size_t> reversed_;  ///< contacts; scratch
+
+  std::vector<LawChange> changes_;  ///< scratch
+  int limit_updates_ = 0;           ///< in this step, of limits that go with other forces
 
   // Bounds.
   struct KnownStep {

@@ -133,7 +133,7 @@ bool OpenClose::change_laws(const StepSystem& system, OpenCloseResult& result) {
     result.bond_broken = true;
     return true;
   }
-  return false;
+  return laws_.change_couplings(system, iterate_);
 }
 
 OpenCloseResult OpenClose::solve(const StepSystem& system, std::span<double> d,

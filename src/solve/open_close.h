@@ -23,7 +23,7 @@ class Interrupted : public std::exception {};
 ///     1. minimize Π with the laws as they are: by a low-rank update of the factor at hand where the solver has one (LowRankUpdate), of
 ///        this step or of an earlier one (KeptFactor); by Newton's method (Newton) where not, or where too many springs act otherwise;
 ///     2. where contacts that slid turn round, let their springs turn with the way of the step; go on with 1;
-///     3. bonds whose strength is exceeded break; go on with 1. A broken bond stays broken;
+///     3. bonds whose strength is exceeded break, and what other couplings have to break; go on with 1. What is broken stays broken;
 ///     4. where the Coulomb bounds differ too much from μN at the solution, freeze them anew; go on with 1
 ///        (a new contact has no friction otherwise, in its first step).
 ///

@@ -77,6 +77,10 @@ inline constexpr int more_static_halvings = 14;
 
 /// Updates of what bonds bear in a step, lest two bonds hand a strength to and fro.
 inline constexpr int most_bond_updates = 20;
+/// Times that limits of couplings which go with other forces are taken anew in a step.
+inline constexpr int most_limit_updates = 8;
+/// Of so many events of couplings that a solution brings at once, one is taken. More: more minimizations; fewer: what breaks together may be too much.
+inline constexpr std::size_t events_at_once = 10;
 /// Of a bond's strength, up to which it counts as known.
 inline constexpr double settled_strength = 1e-3;
 

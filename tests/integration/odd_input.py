@@ -107,7 +107,7 @@ AS_THEY_ARE = {
     "residual-100-percent": r"velocity: is lost, as the first stage settles",
     "residual-27-percent": r"tension without cohesion holds nothing",
     "retaining-wall": None,
-    "slope-anchor": r"its block swings on it",
+    "slope-anchor": None,
     "slope-cohesion": None,
     "slope-daylight": None,
     "slope-dropped-joint": r"0.45 m short of another trace: \[cutting\] snapping = 0.5",

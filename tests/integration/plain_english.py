@@ -25,6 +25,7 @@ PAGES = [
     "docs/guide/results.md",
     "docs/guide/running.md",
     "docs/guide/scenarios.md",
+    "docs/guide/support.md",
     "docs/index.md",
     "docs/library.md",
     "docs/python-api.md",

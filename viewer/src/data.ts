@@ -216,6 +216,7 @@ export interface ElementAtEnd {
   limit_n_m: number | null;
   utilization: number | null;
   has_yielded: boolean;
+  has_ruptured: boolean;
 }
 
 /** Where an array lies in the unpacked bytes. */

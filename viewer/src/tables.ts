@@ -127,7 +127,7 @@ export function elementTable(run: Run): HTMLElement | null {
       e.utilization === null ? "–" : significant(100 * e.utilization, 3),
       e.has_yielded ? h("span", { class: "sub" }, "reached") : null,
     ),
-    h("td", {}, e.present ? kilo(e.force_n_m) : "not there"),
+    h("td", {}, e.has_ruptured ? "broken" : e.present ? kilo(e.force_n_m) : "not there"),
     h("td", {}, length(e.elongation_m, 2)),
     h("td", {}, e.yielded_m === 0 ? "–" : length(e.yielded_m, 2)),
   ]);

@@ -39,6 +39,20 @@ TEST(NumericalDamping, IsAShareOfCriticalForAnyStep) {
   }
 }
 
+// Shi's rule damps springs between points by Ω³/16 where it resolves their swing, with Ω = ω Δt. Figures of an independent eigenvalue computation.
+TEST(NumericalDamping, OfSpringsIsOfThirdOrder) {
+  const Integrator shi = Integrator::shi(1.0);
+  for (const auto& [frequency, ratio] : {std::pair{3.0, 3.346696e-6},
+                                         {9.0, 8.993450e-5},
+                                         {20.0, 9.666319e-4},
+                                         {60.0, 2.147645e-2},
+                                         {100.0, 7.147395e-2}})
+    EXPECT_NEAR(numerical_damping_of_spring(shi, 0.002, frequency) / ratio, 1.0, 1e-4) << frequency;
+  for (const Integrator& rule : {Integrator::generalized_alpha(0.0), Integrator::generalized_alpha(0.8),
+                                 Integrator::average_acceleration()})
+    EXPECT_EQ(numerical_damping_of_spring(rule, 0.002, 20.0), numerical_damping(rule, 0.002, 20.0));
+}
+
 TEST(RayleighDamping, HasItsRatioAtItsFrequency) {
   for (const DampingKind kind : {DampingKind::stiffness, DampingKind::rayleigh, DampingKind::mass})
     EXPECT_NEAR((RayleighDamping{0.05, 3.0, kind}).ratio_at(3.0), 0.05, 1e-15);

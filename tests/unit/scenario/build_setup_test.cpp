@@ -173,7 +173,7 @@ TEST(BuildSetup, AStageInstallsSupports) {
   };
   EXPECT_THAT(refused({"stage.supported.install=['secnd']"}),
               HasSubstr("stage.supported.install[0]: found the string \"secnd\"; expected the name of a "
-                        "[[spring]]: \"first\" or \"second\"; did you mean 'second'?"));
+                        "[[spring]] or [[bolt]]: \"first\" or \"second\"; did you mean 'second'?"));
   EXPECT_THAT(refused({"stage.supported.install=['second', 'second']"}),
               HasSubstr("again; expected every name once"));
   EXPECT_THAT(refused({"stage.settled.install=['second']"}),

@@ -140,7 +140,7 @@ TEST(EarthquakeChecks, DampingThatWavesDoNotHave) {
       HasSubstr("damping of waves at 1, 3, 10, 30 Hz, with that of the rule: 0.83, 2.5, 8.4, 27 %"));
 }
 
-// A block of 5830 kg/m on 2.2e7 N/m swings at 9.8 Hz; Shi's rule takes ω Δt/4.
+// A block of 5830 kg/m on 2.2e7 N/m swings at 9.8 Hz. Shi's rule takes ω Δt/4 where supports hold it, and (ω Δt)³/16 where springs between points do.
 TEST(EarthquakeChecks, SpringsThatTheRuleDamps) {
   const std::string hung = R"(
 [rock]
@@ -158,12 +158,12 @@ outer = [[-1, 3], [1, 3], [1, 4], [-1, 4]]
 [[block]]
 name = "stone"
 outer = [[-0.75, 0], [0.75, 0], [0.75, 1.4666667], [-0.75, 1.4666667]]
-[[spring]]
+[[support]]
 name = "bolt"
-from = [0, 3]
-to = [0, 1.4]
+block = "stone"
+points = [[0, 1.4]]
+directions = ["y"]
 stiffness = 2.2e7
-yield = 1e5
 [[stage]]
 name = "hangs"
 kind = "rest"
@@ -174,11 +174,19 @@ duration = 3
     build_setup(parse(hung, overrides), 0, &all);
     return all;
   };
-  EXPECT_THAT(warnings({}), Contains(HasSubstr("spring.bolt: its block swings on it at 9.78 Hz, where "
+  EXPECT_THAT(warnings({}), Contains(HasSubstr("support.bolt: its block swings on it at 9.78 Hz, where "
                                                "integrator = \"shi\" takes 3.1 % of critical")));
   EXPECT_THAT(warnings({"time.step=0.001"}), IsEmpty());
   EXPECT_THAT(warnings({"solver.integrator=generalized-alpha"}), IsEmpty());
   EXPECT_THAT(warnings({"stage.hangs={name='hangs', kind='settle'}"}), IsEmpty());
+  const auto sprung = [](const char* stiffness) {
+    return std::vector<std::string>{
+        "support=[]",
+        std::string("spring=[{name='tie', from=[0, 3], to=[0, 1.4], stiffness=") + stiffness + "}]"};
+  };
+  EXPECT_THAT(warnings(sprung("2.2e7")), IsEmpty());
+  EXPECT_THAT(warnings(sprung("2.2e9")),
+              Contains(HasSubstr("spring.tie: its block swings on it at 97.8 Hz")));
 }
 
 TEST(EarthquakeChecks, LoadsThatChangeAfterTheEnd) {

@@ -45,6 +45,8 @@ TEST(KeyHints, OfWordsOfOtherPrograms) {
                 {"jset=1", "did you mean 'joint_set'?"},
                 {"fault=1", "did you mean 'trace_map'?"},
                 {"earthquake=1", "did you mean 'motion'?"},
+                {"rockbolts=1", "did you mean 'bolt'?"},
+                {"anchor=1", "did you mean 'bolt'?"},
                 {"excavation.tunnel.height=1", "did you mean 'wall_height'?"},
                 {"excavation.tunnel.radius=1", "did you mean 'diameter'?"},
                 {"excavation.tunnel.internal_pressure=1", "did you mean 'pressure'?"},
@@ -59,7 +61,7 @@ TEST(KeyHints, OfKeysThatBelongElsewhere) {
       {{"rock.kn=1",
         "'normal_stiffness' belongs to [joints], [[joint_set]], [[trace_map]], [rock_bridge], [[interface]]"},
        {"rock.dt=1", "'step' belongs to [time]"},
-       {"E=1", "'young' belongs to [rock], [[region]], [[block]]"},
+       {"E=1", "'young' belongs to [rock], [[region]], [[block]], [[bolt]]"},
        {"rock.units=1", "'units' belongs to the top of the file"},
        {"K0=1", "'k0' belongs to [in_situ]"},
        {"rock.fault=1", "[[trace_map]] is the table for that"},
@@ -67,14 +69,8 @@ TEST(KeyHints, OfKeysThatBelongElsewhere) {
 }
 
 TEST(KeyHints, OfWhatTheProgramHasNot) {
-  const char* anchor =
-      "a [[spring]] between points of two blocks is an anchor, with its stiffness and yield; bolts that rock "
-      "holds along "
-      "their length, and dowels, are not in the program";
   expect_hints(
-      {{"bolt=1", anchor},
-       {"anchor=1", anchor},
-       {"srf=1",
+      {{"srf=1",
         "strength_factor of [joints] divides their strength; keyblock limit finds the factor of "
         "safety by --key "
         "joints.strength_factor"},

@@ -64,7 +64,9 @@ TEST(LawUpdates, BringBoundsToTheNormalForcesOfTheStep) {
   s.run(0.1, 0.005);
   s.state.velocity[s.model.blocks[1].first] += 0.5;
   Solved solved(s);
-  for (double& bound : solved.springs().bound) bound *= 0.5;  // as if the block had weighed half as much
+  for (std::size_t c = 0; c < solved.springs().size(); ++c)
+    solved.springs().set_bound(c,
+                               0.5 * solved.springs().bound[c]);  // as if the block had weighed half as much
   solved.minimize();
   const double weight = 2600.0 * 0.5 * simulation::g;
   ASSERT_GT(bound_error(solved), 0.1 * weight);

@@ -1,0 +1,190 @@
+#include "scenario/bolts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "scenario/key_path.h"
+#include "simulation/build_bolts.h"
+#include "simulation/history_block.h"
+#include "simulation/outline_arc.h"
+
+namespace keyblock::scenario {
+namespace {
+
+/// A straight part of the outline that has bolts.
+struct Part {
+  Vec2 from, to;
+
+  [[nodiscard]] double length() const { return norm(to - from); }
+  /// Away from the opening, of length 1.
+  [[nodiscard]] Vec2 outwards() const { return Vec2{to.y - from.y, from.x - to.x} / length(); }
+};
+
+/// In their order counter-clockwise from the start of the arc.
+std::vector<Part> parts_of(const BoltSpec& spec, const Ring& outline) {
+  const Vec2 centre = centroid(Polygon{outline, {}});
+  std::vector<std::pair<double, Part>> parts;  // by their angle from the start
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vec2 a = outline[k], b = outline[(k + 1) % outline.size()];
+    if (a == b) continue;
+    if (!spec.arc) {
+      parts.emplace_back(static_cast<double>(k), Part{a, b});
+      continue;
+    }
+    for (const auto& [from, to] : simulation::within_arc({0.0, 1.0}, a, b, centre, *spec.arc))
+      parts.emplace_back(simulation::angle_in_arc(lerp(a, b, 0.5 * (from + to)) - centre, *spec.arc),
+                         Part{lerp(a, b, from), lerp(a, b, to)});
+  }
+  std::ranges::stable_sort(parts, {}, &std::pair<double, Part>::first);
+  std::vector<Part> all;
+  for (const auto& [angle, part] : parts) all.push_back(part);
+  return all;
+}
+
+/// m along the parts, of every bolt.
+std::vector<double> places_of(const BoltSpec& spec, double length) {
+  const bool is_closed = !spec.arc;
+  const double step = spec.spacing_along.value_or(0.0);
+  int count = spec.count.value_or(0);
+  double first = 0.0, apart = 0.0;
+  if (step > 0.0) {
+    count = is_closed ? std::max(1, static_cast<int>(std::lround(length / step)))
+                      : 1 + static_cast<int>(std::floor(length / step * (1.0 + 1e-9)));
+    apart = is_closed ? length / count : step;
+    first = is_closed ? 0.5 * apart : 0.5 * (length - (count - 1) * step);
+  } else if (is_closed || count == 1) {
+    apart = length / count;
+    first = 0.5 * apart;
+  } else {
+    apart = length / (count - 1);
+  }
+  std::vector<double> places;
+  for (int k = 0; k < count; ++k) places.push_back(std::clamp(first + k * apart, 0.0, length));
+  return places;
+}
+
+[[noreturn]] void refuse_bolt(const Scenario& scenario, const std::string& key, std::string found,
+                              std::string expected) {
+  throw InputError(Diagnostic{scenario.where(key), key, std::move(found), std::move(expected), ""});
+}
+
+/// The pieces of bolt k. Mistakes show at the keys of its [[bolt]].
+std::vector<simulation::BoltPiece> pieces_of(const Scenario& scenario, const simulation::RunSetup& setup,
+                                             std::size_t k, const BoltSpec& spec) {
+  try {
+    return simulation::bolt_pieces(setup, k);
+  } catch (const InputError& error) {
+    const Diagnostic& mistake = error.diagnostics().front();
+    const bool is_toe = mistake.key.ends_with(".to"), is_pattern = spec.excavation >= 0;
+    const char* head = is_pattern ? "excavation" : "from";
+    const char* toe = is_pattern ? "length" : "to";
+    refuse_bolt(
+        scenario, join_path(join_path("bolt", spec.bolt.list), is_toe ? toe : head),
+        fmt::format("the {} of {} at {}", is_toe ? "toe" : "head", setup.bolts[k].name, mistake.found),
+        mistake.expected);
+  }
+}
+
+/// What seems odd with the bolts of one [[bolt]].
+class OddBolts {
+ public:
+  void see(const simulation::RunSetup& setup, const loading::Bolt& bolt,
+           const std::vector<simulation::BoltPiece>& pieces) {
+    ++count_;
+    idle_ += pieces.size() == 1 ? 1 : 0;
+    for (std::size_t j = 0; j + 1 < pieces.size(); ++j) {
+      if (pieces[j + 1].from - pieces[j].to > 1e-3 * bolt.length()) keep(crosses_, bolt.name);
+    }
+    for (const simulation::BoltPiece& piece : pieces) {
+      if (const auto stage = simulation::excavating_stage(setup, piece.block)) {
+        keep(ends_, fmt::format("{} crosses rock that the stage '{}' excavates, and ends", bolt.name,
+                                setup.stages[*stage].name));
+      }
+    }
+  }
+  void warn(const std::string& path, std::vector<std::string>& warnings) const {
+    if (idle_ > 0)
+      warnings.push_back(
+          fmt::format("{}: {} of {} bolts cross no joint, and do nothing", path, idle_, count_));
+    if (!crosses_.empty())
+      warnings.push_back(fmt::format("{}: {} crosses an opening; its bar is free there", path, crosses_));
+    if (!ends_.empty()) warnings.push_back(fmt::format("{}: {} there", path, ends_));
+  }
+
+ private:
+  static void keep(std::string& first, std::string text) {
+    if (first.empty()) first = std::move(text);
+  }
+
+  int count_ = 0, idle_ = 0;
+  std::string crosses_, ends_;  ///< of the first
+};
+
+}  // namespace
+
+std::vector<std::pair<Vec2, Vec2>> pattern_of(const BoltSpec& spec, const Ring& outline) {
+  const std::vector<Part> parts = parts_of(spec, outline);
+  double length = 0.0;
+  for (const Part& part : parts) length += part.length();
+  std::vector<std::pair<Vec2, Vec2>> bolts;
+  if (parts.empty()) return bolts;
+  std::size_t p = 0;
+  double before = 0.0;
+  const double near = 1e-9 * length;
+  for (const double place : places_of(spec, length)) {
+    while (p + 1 < parts.size() && place > before + parts[p].length() + near) before += parts[p++].length();
+    const Part& part = parts[p];
+    const double along = std::min(place - before, part.length());
+    const Vec2 head = lerp(part.from, part.to, along / part.length());
+    Vec2 outwards = part.outwards();
+    if (along > part.length() - near && p + 1 < parts.size()) outwards = outwards + parts[p + 1].outwards();
+    outwards = outwards / norm(outwards);
+    bolts.emplace_back(head, head + spec.length * outwards);
+  }
+  return bolts;
+}
+
+std::vector<loading::Bolt> bolts_of(const Scenario& scenario, const std::vector<Ring>& outlines) {
+  std::vector<loading::Bolt> bolts;
+  for (const BoltSpec& spec : scenario.bolts) {
+    if (spec.excavation < 0) {
+      bolts.push_back(spec.bolt);
+      bolts.back().name = spec.bolt.list;
+      continue;
+    }
+    int number = 0;
+    for (const auto& [head, toe] : pattern_of(spec, outlines[static_cast<std::size_t>(spec.excavation)])) {
+      loading::Bolt& bolt = bolts.emplace_back(spec.bolt);
+      bolt.name = fmt::format("{}.{}", bolt.list, ++number);
+      bolt.head = head;
+      bolt.toe = toe;
+    }
+    if (number == 0)
+      refuse_bolt(scenario, join_path(join_path("bolt", spec.bolt.list), "arc"),
+                  "an arc without a part of the outline",
+                  "angles that have some of the outline between them");
+  }
+  return bolts;
+}
+
+void check_bolts(const Scenario& scenario, const simulation::RunSetup& setup,
+                 std::vector<std::string>& warnings) {
+  std::size_t k = 0;
+  for (const BoltSpec& spec : scenario.bolts) {
+    const std::string path = join_path("bolt", spec.bolt.list);
+    OddBolts odd;
+    for (; k < setup.bolts.size() && setup.bolts[k].list == spec.bolt.list; ++k) {
+      const loading::Bolt& bolt = setup.bolts[k];
+      if (bolt.pretension > 0.0 && bolt.staged < 0)
+        refuse_bolt(scenario, join_path(path, "pretension"), "pretension of a bolt that no stage installs",
+                    "a stage of kind \"settle\" with the bolt in `install`");
+      odd.see(setup, bolt, pieces_of(scenario, setup, k, spec));
+    }
+    odd.warn(path, warnings);
+  }
+}
+
+}  // namespace keyblock::scenario

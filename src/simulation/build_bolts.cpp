@@ -1,0 +1,195 @@
+#include "simulation/build_bolts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "core/index.h"
+#include "simulation/history_block.h"
+#include "simulation/refuse.h"
+
+namespace keyblock::simulation {
+
+namespace {
+
+using loading::Bolt;
+using loading::BoltSide;
+
+// Of the length of a bolt: stretches of rock and gaps that are not seen; how far the line of a bolt is moved aside, so that a joint along it is
+// on one side; how far an end may be from rock.
+constexpr double least_share = 1e-6, aside_share = 1e-8, end_share = 2e-3;
+
+Vec2 axis_of(const Bolt& bolt) {
+  return (bolt.toe - bolt.head) / bolt.length();
+}
+
+/// m from `head`, where the line crosses a ring, beyond either end too.
+void add_crossings(const Ring& ring, Vec2 head, Vec2 axis, std::vector<double>& places) {
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Vec2 a = ring[k] - head, b = ring[(k + 1) % ring.size()] - head;
+    const double of_a = cross(axis, a), of_b = cross(axis, b);
+    if ((of_a > 0.0) != (of_b > 0.0)) places.push_back(dot(axis, lerp(a, b, of_a / (of_a - of_b))));
+  }
+}
+
+/// The stage that installs a bolt, by index; −1: it is there from the start.
+std::ptrdiff_t installing_stage(const RunSetup& setup, const Bolt& bolt) {
+  if (bolt.staged < 0) return -1;
+  const std::string& name = setup.staged_supports[at(bolt.staged)];
+  const auto installs = [&](const record::Stage& stage) {
+    return std::ranges::find(stage.install, name) != stage.install.end();
+  };
+  return std::ranges::find_if(setup.stages, installs) - setup.stages.begin();
+}
+
+/// Whether the block is excavated before the bolt comes, or as it does.
+bool is_gone(const RunSetup& setup, std::size_t block, std::ptrdiff_t installed) {
+  const auto stage = excavating_stage(setup, block);
+  return stage && static_cast<std::ptrdiff_t>(*stage) <= installed;
+}
+
+[[noreturn]] void refuse_end(const RunSetup& setup, const std::string& key, Vec2 end) {
+  const Vec2 p = end + setup.system.origin;
+  refuse(key, fmt::format("[{:.6g}, {:.6g}], in no rock", p.x, p.y),
+         "a point of rock that is there when the bolt is installed");
+}
+
+class BoltBuilder {
+ public:
+  BoltBuilder(const RunSetup& setup, const dynamics::Model& model, std::size_t k, BoltSprings& to)
+      : bolt_(setup.bolts[k]), model_(model), pieces_(bolt_pieces(setup, k)), to_(to) {}
+
+  void build() {
+    if (bolt_.is_anchored) return build_anchored();
+    std::vector<std::size_t> joints;  // by the piece before
+    for (std::size_t j = 0; j + 1 < pieces_.size(); ++j) {
+      if (moves(j, j + 1) && at_joint(j).capacity > 0.0) joints.push_back(j);
+    }
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      build_joint(joints[i], joints.size() == 1 ? bolt_.name : fmt::format("{}.{}", bolt_.name, i + 1));
+  }
+
+ private:
+  /// Whether the ends in two pieces can move against each other.
+  [[nodiscard]] bool moves(std::size_t a, std::size_t b) const {
+    const std::size_t of_a = pieces_[a].block, of_b = pieces_[b].block;
+    return of_a != of_b && !(model_.blocks[of_a].fixed && model_.blocks[of_b].fixed);
+  }
+  [[nodiscard]] Vec2 place(double from_head) const { return bolt_.head + from_head * axis_of(bolt_); }
+
+  [[nodiscard]] dynamics::PointSpring spring_of(const char* kind, std::string name) const {
+    dynamics::PointSpring spring;
+    spring.kind = kind;
+    spring.name = std::move(name);
+    spring.staged = bolt_.staged;
+    spring.spacing = bolt_.spacing;
+    return spring;
+  }
+  /// strained: m of the bar, that yields.
+  void set_bar(dynamics::PointSpring& spring, double stiffness, double capacity, double strained) const {
+    spring.stiffness = stiffness / bolt_.spacing;
+    spring.yield = capacity / bolt_.spacing;
+    spring.pretension = bolt_.pretension / bolt_.spacing;
+    if (bolt_.rupture_strain) spring.rupture = *bolt_.rupture_strain * strained;
+  }
+  [[nodiscard]] dynamics::MaterialPoint point(const BoltPiece& piece, double from_head) const {
+    return material_point(model_, piece.block, place(from_head));
+  }
+  /// Ends, and the stretch that it is drawn along: m from the head, in the blocks of two pieces.
+  void add(dynamics::PointSpring spring, const BoltPiece& a, const BoltPiece& b,
+           std::pair<double, double> ends, std::pair<double, double> drawn) const {
+    spring.from = place(ends.first);
+    spring.to = place(ends.second);
+    to_.springs.push_back(std::move(spring));
+    to_.points.push_back(point(a, ends.first));
+    to_.points.push_back(point(b, ends.second));
+    to_.drawn.push_back(point(a, drawn.first));
+    to_.drawn.push_back(point(b, drawn.second));
+  }
+
+  void build_anchored() const {
+    if (!moves(0, pieces_.size() - 1)) return;
+    const double length = bolt_.length();
+    dynamics::PointSpring spring = spring_of("bolt", bolt_.name);
+    set_bar(spring, bolt_.bar() / length, bolt_.yield.value_or(HUGE_VAL), length);
+    spring.pulls_only = true;
+    add(spring, pieces_.front(), pieces_.back(), {0.0, length}, {0.0, length});
+  }
+
+  /// Of the joint behind piece j. What is between the pieces is free.
+  [[nodiscard]] loading::BoltAtJoint at_joint(std::size_t j) const {
+    const auto [from, to] = bolt_.grouted;
+    const double out = pieces_[j].to, in = std::max(pieces_[j + 1].from, out);
+    const double head = std::max(std::min(to, out) - from, 0.0), toe = std::max(to - std::max(from, in), 0.0);
+    return bolt_at_joint(bolt_,
+                         BoltSide(bolt_, head > 0.0 ? out - std::min(to, out) : out, head, bolt_.has_plate),
+                         BoltSide(bolt_, in - out + std::max(from - in, 0.0), toe, false));
+  }
+
+  void build_joint(std::size_t j, const std::string& name) const {
+    const BoltPiece &a = pieces_[j], &b = pieces_[j + 1];
+    const loading::BoltAtJoint joint = at_joint(j);
+    const double half = 0.5 * bolt_.active_length;
+    const std::pair drawn{j == 0 ? 0.0 : 0.5 * (a.from + a.to),
+                          j + 2 == pieces_.size() ? bolt_.length() : 0.5 * (b.from + b.to)};
+    dynamics::PointSpring bar = spring_of("bolt", name);
+    set_bar(bar, joint.stiffness, joint.capacity, bolt_.active_length);
+    const auto number = static_cast<int>(to_.springs.size());
+    add(bar, a, b, {std::max(a.to - half, a.from), std::min(b.from + half, b.to)}, drawn);
+    if (bolt_.dowel_stiffness <= 0.0) return;
+    dynamics::PointSpring dowel = spring_of("dowel", name + ".dowel");
+    dowel.stiffness = bolt_.dowel_stiffness / bolt_.spacing;
+    dowel.yield = bolt_.dowel_strength.value_or(HUGE_VAL) / bolt_.spacing;
+    if (bolt_.dowel_strength && bolt_.yield) dowel.yield_along = *bolt_.yield / bolt_.spacing;
+    dowel.across = number;
+    add(dowel, a, b, {a.to, b.from}, drawn);
+  }
+
+  const Bolt& bolt_;
+  const dynamics::Model& model_;
+  std::vector<BoltPiece> pieces_;
+  BoltSprings& to_;
+};
+
+}  // namespace
+
+dynamics::MaterialPoint material_point(const dynamics::Model& model, std::size_t block, Vec2 place) {
+  dynamics::MaterialPoint point{static_cast<int>(block), std::vector<double>(at(model.blocks[block].size))};
+  model.blocks[block].basis.evaluate(place, point.phi.data());
+  return point;
+}
+
+std::vector<BoltPiece> bolt_pieces(const RunSetup& setup, std::size_t k) {
+  const Bolt& bolt = setup.bolts[k];
+  const double length = bolt.length();
+  const Vec2 axis = axis_of(bolt), head = bolt.head + aside_share * length * Vec2{-axis.y, axis.x};
+  const std::ptrdiff_t installed = installing_stage(setup, bolt);
+  std::vector<BoltPiece> pieces;
+  std::vector<double> places;
+  for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
+    if (is_gone(setup, b, installed)) continue;
+    const Polygon& polygon = setup.system.blocks[b].polygon;
+    places.clear();
+    add_crossings(polygon.outer, head, axis, places);
+    for (const Ring& hole : polygon.holes) add_crossings(hole, head, axis, places);
+    std::ranges::sort(places);
+    for (std::size_t i = 0; i + 1 < places.size(); i += 2) {
+      const BoltPiece piece{b, std::max(places[i], 0.0), std::min(places[i + 1], length)};
+      if (piece.length() > least_share * length) pieces.push_back(piece);
+    }
+  }
+  std::ranges::sort(pieces, {}, [](const BoltPiece& p) { return std::pair(p.from, p.block); });
+  const std::string key = fmt::format("bolt[{}]", k);
+  if (pieces.empty() || pieces.front().from > end_share * length) refuse_end(setup, key + ".from", bolt.head);
+  if (pieces.back().to < (1.0 - end_share) * length) refuse_end(setup, key + ".to", bolt.toe);
+  return pieces;
+}
+
+void add_bolts(const RunSetup& setup, const dynamics::Model& model, BoltSprings& to) {
+  for (std::size_t k = 0; k < setup.bolts.size(); ++k) BoltBuilder(setup, model, k, to).build();
+}
+
+}  // namespace keyblock::simulation
