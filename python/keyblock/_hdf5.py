@@ -206,7 +206,7 @@ class ResultFile:
 
     def unit(self, name: str) -> str:
         """Unit of a dataset; "" for numbers without one. Of columns that differ: one for each, after commas."""
-        unit = text_of(self._attribute(name, "units") or self._attribute(name, "unit"))
+        unit = text_of(self._attribute(name, "units")) or text_of(self._attribute(name, "unit"))
         return "" if unit == "1" else unit
 
     def units(self, name: str) -> list[str]:

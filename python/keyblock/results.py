@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Any
 from . import _arguments as arguments
 from . import record, tables
 from ._hdf5 import ResultFile
-from .blocks import Blocks
+from .blocks import JOINT_SET, TRACE_MAP, Blocks
 from .contacts import Contacts, ContactSnapshots
-from .errors import NoResultError, UnfinishedWarning
+from .errors import DamagedError, NoResultError, UnfinishedWarning
 from .frames import Frames, When
 from .stages import Stages, read_stages
 
@@ -116,9 +116,12 @@ class Result:
 
         Columns `joint`, `trace` (−1: the whole set or map) and SI numbers, angles in degrees. NaN of what does not weaken. Rows of a trace are those
         of edges with `blocks.edge_trace`."""
-        rows = "joints/edge_kind"
-        names = self.blocks.edge_names(self._file.read(rows), self._file.read("joints/edge_index")) if self._file.has(rows) else []
-        return tables.joints(self._file, names)
+        if not self._file.has("joints/edge_kind"):
+            return tables.joints(self._file, [])
+        kinds, numbers = self._file.read("joints/edge_kind"), self._file.read("joints/edge_index")
+        if not {int(kind) for kind in kinds} <= {JOINT_SET, TRACE_MAP}:
+            raise DamagedError(f"{self.path} is damaged: joints/edge_kind has more than joint sets and trace maps")
+        return tables.joints(self._file, self.blocks.edge_names(kinds, numbers))
 
     @property
     def elements(self) -> Any:

@@ -113,6 +113,7 @@ def looks(run: kb.Run) -> dict[str, Callable[[], Any]]:
         "contacts": lambda: run.contacts().slip,
         "histories": lambda: repr(run.histories),
         "steps": lambda: repr(run.steps),
+        "joints": lambda: repr(run.joints),
         "energy": lambda: repr(run.energy),
         "stages": lambda: list(run.stages),
         "summary": lambda: dict(run.summary),

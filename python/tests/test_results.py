@@ -71,6 +71,20 @@ def test_stages_as_a_table(tunnel):
     assert table.loc["after", "fallen_area_m2"] == tunnel.stages["after"].damage.fallen_area_m2
 
 
+def test_strengths_of_joints_are_those_of_the_exported_table(tunnel, exported):
+    with open(exported / "joints.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    table = tunnel.joints
+    assert list(table["joint"]) == [row["name"] for row in rows]
+    for name in ("length", "friction", "cohesion"):
+        assert list(table[name]) == [float(row[name]) for row in rows]
+    assert table.attrs["units"]["cohesion"] == "Pa"
+    assert np.isnan(table["residual_friction"]).all() and (table["trace"] == -1).all(), "all traces of a set are alike"
+    blocks = tunnel.blocks
+    is_joint = np.isin(blocks.edge_kind, (1, 2))
+    assert (blocks.edge_trace[is_joint] >= 0).all() and (blocks.edge_trace[~is_joint] == -1).all()
+
+
 def test_frames_are_those_of_the_exported_table(tunnel, exported):
     of_frames: dict[int, list[dict[str, str]]] = {}
     for row in rows_of(exported / "blocks.csv"):
