@@ -45,14 +45,14 @@ void add_vector(std::vector<float>& values, Vec2 v) {
   values.insert(values.end(), {static_cast<float>(v.x), static_cast<float>(v.y), 0.0F});
 }
 
-/// The first edges of stretches of one label, in a ring of so many display vertices from `first` on; at least one.
+/// The first edges of stretches of one label and trace, in a ring of so many display vertices from `first` on; at least one.
 std::vector<int> stretches(const record::ModelRecord& model, int first, int count) {
   const auto label = [&](int k) {
     return model.edge_label[static_cast<std::size_t>(first + (k + count) % count)];
   };
   std::vector<int> begins;
   for (int k = 0; k < count; ++k) {
-    if (!(label(k) == label(k - 1))) begins.push_back(k);
+    if (!(label(k) == label(k - 1)) || label(k).trace != label(k - 1).trace) begins.push_back(k);
   }
   if (begins.empty()) begins.push_back(0);
   return begins;
@@ -163,7 +163,7 @@ std::string VtkBlocks::cells(const record::Frame& frame) {
 
 std::string VtkBlocks::outlines(const record::Frame& frame) const {
   std::vector<std::int64_t> vertices, end;
-  std::vector<std::int32_t> block, edge_index;
+  std::vector<std::int32_t> block, edge_index, edge_trace;
   std::vector<std::uint8_t> status, edge_kind;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     const std::vector<int>& start = model_.blocks[b].ring_start;
@@ -179,6 +179,7 @@ std::string VtkBlocks::outlines(const record::Frame& frame) const {
         status.push_back(static_cast<std::uint8_t>(frame.status[b]));
         edge_kind.push_back(static_cast<std::uint8_t>(label.kind));
         edge_index.push_back(label.index);
+        edge_trace.push_back(label.trace);
       }
     }
   }
@@ -190,6 +191,7 @@ std::string VtkBlocks::outlines(const record::Frame& frame) const {
   file.array("status", view(status));
   file.array("edge_kind", view(edge_kind));
   file.array("edge_index", view(edge_index));
+  file.array("edge_trace", view(edge_trace));
   file.close("CellData");
   add_vertices(file, frame);
   add_vtk_lines(file, vertices, end);

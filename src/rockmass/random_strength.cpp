@@ -15,8 +15,8 @@ namespace {
 /// Random streams of traces (trace_generator.cpp) have the number of the set alone in this word.
 constexpr std::uint32_t first_strength_bit = 16;
 constexpr std::uint32_t of_maps = 1u << 15;
-/// No realization has this number.
-constexpr std::uint32_t of_permutations = 0xffffffffu;
+/// No realization, and no interval of a line, has this number.
+constexpr std::uint32_t no_number = 0xffffffffu;
 
 /// Whose draw a strength has.
 StrengthKey peak_of(StrengthKey key) {
@@ -96,7 +96,7 @@ double rounded(double x) {
 /// π(r)
 std::uint32_t stratum_of(const Sampling& sampling, std::uint32_t word) {
   const auto n = static_cast<std::size_t>(sampling.strata);
-  const RandomStream stream(sampling.seed, of_permutations, word, static_cast<std::uint32_t>(n));
+  const RandomStream stream(sampling.seed, no_number, word, static_cast<std::uint32_t>(n));
   std::vector<std::uint32_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
   for (std::size_t k = n - 1; k > 0; --k) {  // Fisher & Yates
@@ -130,7 +130,7 @@ double RandomStrength::truncated_mean() const {
 double uniform_of(const Sampling& sampling, const Trace& trace, StrengthKey key, DrawnPer per) {
   const std::uint32_t word = stream_word(trace.source, peak_of(key));
   const std::uint32_t line = per == DrawnPer::realization ? 0u : trace.line,
-                      interval = per == DrawnPer::joint ? trace.interval : of_permutations;
+                      interval = per == DrawnPer::joint ? trace.interval : no_number;
   const auto realization = static_cast<std::uint32_t>(sampling.realization);
   const double u = RandomStream(sampling.seed, realization, word, line).uniform(interval);
   if (per != DrawnPer::realization || sampling.realization >= sampling.strata) return u;
