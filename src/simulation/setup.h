@@ -35,7 +35,8 @@ struct BlockProperties {
 struct JointTable {
   contact::JointProperties
       standard;  ///< [joints]: explicit blocks, excavation outlines, and new contacts between them
-  std::vector<contact::JointProperties> joint_sets;  ///< then of rock bridges, if there are any, and of interfaces
+  std::vector<contact::JointProperties>
+      joint_sets;  ///< then of rock bridges, if there are any, and of interfaces
   std::vector<contact::JointProperties> trace_maps;
   contact::JointProperties frame;  ///< between the rock and the frame; frictionless unless given
 
