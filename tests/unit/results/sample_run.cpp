@@ -256,7 +256,7 @@ SampleRun::SampleRun() {
   model.slip_limit = 0.1 / 3.0;
   model.warnings = {"rock.density = 2.6 kg/m3", "a \"quoted\" one"};
   model.closure_is_lower_bound = true;
-  model.cutting = {10, 7, 12.3, 4.5, 6, 2, 1, 0.02, 3, 8, 16.0, 1e-5};
+  model.cutting = {10, 7, 12.3, 4.5, 6, 2.5, 2, 1, 0.02, 3, 8, 16.0, 1e-5};
   model.ground = {{"friction φ", "30°"}, {"set “J 2”", "dip 65°, \"spacing\" 0.5 m"}};
 }
 
