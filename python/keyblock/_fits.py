@@ -36,16 +36,6 @@ _MODEL = {
     "frames/status": "tn",
     "frames/stress": "tn3",
     "frames/velocity": "tn2",
-    "joints/edge_kind": "j",
-    "joints/edge_index": "j",
-    "joints/trace": "j",
-    "joints/length": "j",
-    "joints/friction": "j",
-    "joints/cohesion": "j",
-    "joints/tension": "j",
-    "joints/residual_friction": "j",
-    "joints/residual_cohesion": "j",
-    "joints/weakening_slip": "j",
     "elements/name": "m",
     "elements/kind": "m",
     "elements/limit": "m",
@@ -95,7 +85,8 @@ def check(file: ResultFile) -> None:
     from .contacts import NUMBERS  # which needs files that fit
 
     of_contacts = {f"contacts/{name}": "c" for name in (*NUMBERS, *file.contact_numbers())}
-    for name, letters in (of_contacts | _MODEL).items():
+    of_joints = {f"joints/{name}": "j" for name in file.names_in("joints")}
+    for name, letters in (of_contacts | of_joints | _MODEL).items():
         if not file.has(name):
             continue
         shape = file.shape(name)

@@ -179,13 +179,16 @@ class ResultFile:
     def shape(self, name: str) -> tuple[int, ...]:
         return tuple(self._dataset(name).shape)
 
+    def names_in(self, group: str) -> list[str]:
+        """Of all datasets of a group, in alphabetical order; none where there is no such group."""
+        try:
+            return list(self._file[group]) if self.has(group) else []
+        except _BROKEN as error:
+            raise DamagedError(f"{self.path} is damaged: {group} cannot be read ({error})") from None
+
     def contact_numbers(self) -> list[str]:
         """Names of the columns of `contacts` that are numbers, one for each contact."""
-        try:
-            names = list(self._file["contacts"]) if self.has("contacts") else []
-        except _BROKEN as error:
-            raise DamagedError(f"{self.path} is damaged: contacts cannot be read ({error})") from None
-        paths = {name: f"contacts/{name}" for name in names if name != "time"}
+        paths = {name: f"contacts/{name}" for name in self.names_in("contacts") if name != "time"}
         return [name for name, path in paths.items() if self.kind(path) == "f" and len(self.shape(path)) == 1]
 
     def complete_times(self, group: str) -> np.ndarray:

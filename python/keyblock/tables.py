@@ -12,7 +12,6 @@ from ._hdf5 import ResultFile
 
 HISTORY_COLUMNS = ["ux", "uy", "vx", "vy", "sxx", "syy", "sxy"]  # of results that do not name them
 ELEMENT_COLUMNS = ["force", "elongation"]
-JOINT_COLUMNS = ["length", "friction", "cohesion", "tension", "residual_friction", "residual_cohesion", "weakening_slip"]
 RELEASE_COLUMNS = ["stage", "step", "excavation", "released", "crown", "springline", "mean"]
 
 
@@ -59,16 +58,18 @@ def histories(file: ResultFile) -> Any:
 
 def joints(file: ResultFile, names: Sequence[str]) -> Any:
     """A row for each joint set and trace map, or for each trace where traces have strengths of their own; `names` are those of the rows."""
-    columns: dict[str, Any] = {"joint": list(names)}
+    columns: dict[str, Any] = {"joint": list(names), "trace": np.empty(0, dtype=int)}
+    numbers: list[str] = []
     if names:
         columns["trace"] = file.read("joints/trace")
-        columns |= {name: file.read(f"joints/{name}") for name in JOINT_COLUMNS}
+        numbers = [name for name in file.names_in("joints") if file.kind(f"joints/{name}") == "f"]
+        columns |= {name: file.read(f"joints/{name}") for name in ("length", *numbers) if name in numbers}
     if not _optional.has("pandas"):
         return columns
     import pandas
 
-    frame = pandas.DataFrame(columns, columns=["joint", "trace", *JOINT_COLUMNS])
-    frame.attrs["units"] = {name: file.unit(f"joints/{name}") for name in JOINT_COLUMNS} if names else {}
+    frame = pandas.DataFrame(columns)
+    frame.attrs["units"] = {name: file.unit(f"joints/{name}") for name in numbers}
     return frame
 
 

@@ -79,7 +79,7 @@ WALL = {
     "load that pulls": ("pulls", r"pulls the face outwards"),
     "tilt to the wrong side": (["tilt=-5"], r"gravity: 9.81 m/s² .*to the right"),
     "gravity upwards": (["gravity=[0, 9.81]"], r"pulls upwards"),
-    "anchor that is none": (["anchor=[{x=1}]"], r"a \[\[spring\]\] between points of two blocks is an anchor"),
+    "anchor that is none": (["anchor=[{x=1}]"], r"anchor: .*did you mean 'bolt'"),
     "reduction factor of another program": (["joints.srf=1.5"], r"keyblock limit finds the factor of safety"),
 }
 

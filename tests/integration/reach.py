@@ -30,7 +30,11 @@ KEYS = {
     "src/scenario/sections.h",
     "src/scenario/build_setup.cpp",
     "src/scenario/properties.cpp",
+    "src/scenario/joint_table.cpp",
+    "src/rockmass/random_strength.h",
+    "src/rockmass/random_strength.cpp",
     "src/simulation/setup.h",
+    "src/simulation/build_bolts.h",
     "src/loading/load.h",
 }
 
@@ -110,6 +114,8 @@ ADDITIONS = {
                     "src/scenario/ground_facts.cpp",
                     "src/scenario/strength_checks.cpp",
                     "src/scenario/synonyms.cpp",
+                    "src/record/joint_records.h",
+                    "src/simulation/joint_records.cpp",
                 },
             ),
         },

@@ -241,7 +241,7 @@ class Mistakes(Safety):
         self.assertIn(text, said)
 
     def test_what_is_not_there(self):
-        self.refused('the name of a joint set or trace map, or "joints": "joints", "bedding" or "tension crack"', "--sets", "beding")
+        self.refused('the name of a joint set, trace map or interface, or "joints": "joints", "bedding" or "tension crack"', "--sets", "beding")
         self.refused("did you mean 'bedding'", "--sets", "beding")
         self.refused("excavated", "--stage", "excavation")
         self.refused("safety.area", "--area", -1)
