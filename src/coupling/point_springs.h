@@ -22,6 +22,7 @@ struct PointSpring {
   int staged = -1;  ///< State::installed that says whether it is there; −1: always
   const char* kind = "spring";  ///< Element::kind
   double spacing = 0.0;         ///< m, Element::spacing
+  double push = HUGE_VAL;       ///< N, the largest force that presses its ends apart
   bool pulls_only = false;      ///< it is slack where it is shorter than without force
   double rupture =
       std::numeric_limits<double>::infinity();  ///< m of yielded elongation, beyond which it breaks
@@ -29,7 +30,7 @@ struct PointSpring {
   int across = -1;  ///< the spring, by number, across whose line it acts: a dowel; −1: along its own line
   double yield_along = std::numeric_limits<double>::infinity();  ///< N per thickness, of the bar of a dowel
 
-  [[nodiscard]] double least() const { return pulls_only ? 0.0 : -yield; }
+  [[nodiscard]] double least() const { return pulls_only ? 0.0 : -std::min(yield, push); }
   [[nodiscard]] bool has_events() const {
     return rupture < std::numeric_limits<double>::infinity() || pretension > 0.0;
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/candidates.h"
 #include "core/error.h"
 #include "scenario/key_path.h"
 #include "simulation/build_bolts.h"
@@ -88,12 +89,36 @@ std::vector<simulation::BoltPiece> pieces_of(const Scenario& scenario, const sim
   }
 }
 
+/// m, from a point in a block to its outline.
+double depth_in(const Polygon& block, Vec2 point) {
+  double nearest = HUGE_VAL;
+  for (std::size_t r = 0; r <= block.holes.size(); ++r) {
+    const Ring& ring = block.ring(r);
+    for (std::size_t k = 0; k < ring.size(); ++k)
+      nearest = std::min(nearest, contact::distance_to_segment(point, ring[k], ring[(k + 1) % ring.size()]));
+  }
+  return nearest;
+}
+
+/// The place of a bolt among the stages: installed before the opening is there that it is a pattern of.
+bool is_before_its_opening(const simulation::RunSetup& setup, const loading::Bolt& bolt, int excavation) {
+  for (const record::Stage& stage : setup.stages) {
+    if (std::ranges::find(stage.excavate, excavation) != stage.excavate.end()) return bolt.staged < 0;
+    if (std::ranges::find(stage.install, bolt.list) != stage.install.end()) return true;
+  }
+  return false;
+}
+
 /// What seems odd with the bolts of one [[bolt]].
 class OddBolts {
  public:
   void see(const simulation::RunSetup& setup, const loading::Bolt& bolt,
            const std::vector<simulation::BoltPiece>& pieces) {
     ++count_;
+    // A head in the wall lies on the outline of its block.
+    const double depth = depth_in(setup.system.blocks[pieces.front().block].polygon, bolt.head);
+    if (bolt.has_plate && depth > most_depth_of_a_head * bolt.length())
+      keep(deep_, fmt::format("the plate of {} lies {:.3g} m inside of the rock", bolt.name, depth));
     idle_ += pieces.size() == 1 ? 1 : 0;
     for (std::size_t j = 0; j + 1 < pieces.size(); ++j) {
       if (pieces[j + 1].from - pieces[j].to > 1e-3 * bolt.length()) keep(crosses_, bolt.name);
@@ -111,6 +136,8 @@ class OddBolts {
           fmt::format("{}: {} of {} bolts cross no joint, and do nothing", path, idle_, count_));
     if (!crosses_.empty())
       warnings.push_back(fmt::format("{}: {} crosses an opening; its bar is free there", path, crosses_));
+    if (!deep_.empty())
+      warnings.push_back(fmt::format("{}: {}; `from` is the head, at the wall", path, deep_));
     if (!ends_.empty()) warnings.push_back(fmt::format("{}: {} there", path, ends_));
   }
 
@@ -119,9 +146,22 @@ class OddBolts {
     if (first.empty()) first = std::move(text);
   }
 
+  static constexpr double most_depth_of_a_head = 0.02;  // of the length of a bolt
+
   int count_ = 0, idle_ = 0;
-  std::string crosses_, ends_;  ///< of the first
+  std::string crosses_, ends_, deep_;  ///< of the first
 };
+
+/// A bar of 25 mm that carries 4 MN is no answer.
+void warn_of_strength_without_end(const loading::Bolt& bolt, const std::string& path,
+                                  std::vector<std::string>& warnings) {
+  const bool slips = bolt.is_anchored || bolt.grout_strength.has_value();
+  if (bolt.yield && slips) return;
+  warnings.push_back(fmt::format("{}: {}{}{}; a bolt without a limit holds any load", path,
+                                 bolt.yield ? "" : "its bar never yields, without yield",
+                                 bolt.yield || slips ? "" : ", and ",
+                                 slips ? "" : "its grout never slips, without grout_strength"));
+}
 
 }  // namespace
 
@@ -184,6 +224,12 @@ void check_bolts(const Scenario& scenario, const simulation::RunSetup& setup,
       odd.see(setup, bolt, pieces_of(scenario, setup, k, spec));
     }
     odd.warn(path, warnings);
+    warn_of_strength_without_end(spec.bolt, path, warnings);
+    if (k > 0 && spec.excavation >= 0 && is_before_its_opening(setup, setup.bolts[k - 1], spec.excavation))
+      warnings.push_back(
+          fmt::format("{}: is installed before {} is excavated; put it into `install` of that stage, or of a "
+                      "later one",
+                      path, scenario.excavations[static_cast<std::size_t>(spec.excavation)].path));
   }
 }
 

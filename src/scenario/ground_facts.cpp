@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "rockmass/section.h"
+#include "scenario/bolts.h"
 #include "scenario/load_checks.h"
 #include "scenario/sections.h"
 
@@ -93,6 +94,7 @@ class Facts {
     loads();
     if (!scenario_.supports.empty()) add("supports", std::to_string(scenario_.supports.size()));
     if (!scenario_.springs.empty()) add("springs", std::to_string(scenario_.springs.size()));
+    for (const BoltSpec& spec : scenario_.bolts) bolts(spec);
     return std::move(facts_);
   }
 
@@ -130,6 +132,26 @@ class Facts {
       add(fmt::format("load {} on “{}”", k + 1, load.block), std::move(text));
     }
     if (loads.size() > most_loads) add("more loads", std::to_string(loads.size() - most_loads));
+  }
+
+  void bolts(const BoltSpec& spec) {
+    const loading::Bolt& bolt = spec.bolt;
+    std::string text;
+    if (spec.excavation >= 0) {
+      const ExcavationSpec& opening = scenario_.excavations[static_cast<std::size_t>(spec.excavation)];
+      text = fmt::format("{} of {} m along “{}”", pattern_of(spec, excavation_outline(opening)).size(),
+                         number(spec.length), opening.name);
+    } else {
+      text = fmt::format("one of {} m from ({}, {})", number(bolt.length()), number(bolt.head.x),
+                         number(bolt.head.y));
+    }
+    text += fmt::format(", {}, every {} m", bolt.is_anchored ? "anchored" : "grouted", number(bolt.spacing));
+    text += bolt.yield ? fmt::format(", yield {} kN", number(*bolt.yield / 1e3)) : ", no yield";
+    if (bolt.pretension > 0.0) text += fmt::format(", pretension {} kN", number(bolt.pretension / 1e3));
+    for (const record::Stage& stage : scenario_.stages)
+      if (std::ranges::find(stage.install, bolt.list) != stage.install.end())
+        text += fmt::format(", from “{}” on", stage.name);
+    add(quoted("bolts", bolt.list), std::move(text));
   }
 
   void water(const WaterSpec& spec) {

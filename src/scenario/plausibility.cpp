@@ -408,11 +408,11 @@ std::vector<std::string> study_warnings(const Scenario& scenario) {
   const bool is_random = !scenario.joint_sets.empty() || has_random_strengths(scenario);
   if (!is_random && study.until)
     warnings.emplace_back(
-        "study.until: nothing is random without a [[joint_set]]; all realizations are the same");
+        "study.until: nothing is random, neither joint sets nor strengths; all realizations are the same");
   else if (!is_random && study.realizations != 1)
-    warnings.push_back(
-        fmt::format("study.realizations = {}: nothing is random without a [[joint_set]]; all are the same",
-                    study.realizations));
+    warnings.push_back(fmt::format(
+        "study.realizations = {}: nothing is random, neither joint sets nor strengths; all are the same",
+        study.realizations));
   if (study.latin_hypercube && !has_strengths_of_realizations(scenario))
     warnings.emplace_back(
         "study.sampling = \"latin_hypercube\": no strength is drawn once in each realization (per = "

@@ -108,7 +108,7 @@ class BoltReader {
               {.meaning = "Distance between bolts out of plane. Keys of [[bolt]] are of one bolt.",
                .unit = "m",
                .above = 0.0,
-               .usual = &usual::spacing});
+               .usual = &usual::bolt_spacing});
     const bool by_area = t_.find("area") != nullptr;
     t_.number("diameter", diameter_,
               {.meaning = "Of the bar.",
@@ -118,7 +118,8 @@ class BoltReader {
                .at_most = 1.0,
                .fallback = "required, or area",
                .applies = !by_area || any(),
-               .condition = "no area"});
+               .condition = "no area",
+               .usual = &usual::bar_diameter});
     t_.number("area", bolt_.area,
               {.meaning = "Of the bar, in the place of the diameter.",
                .unit = "m²",
@@ -126,13 +127,15 @@ class BoltReader {
                .at_most = 1.0,
                .fallback = "by diameter"});
     if (!by_area) bolt_.area = 0.25 * std::numbers::pi * diameter_ * diameter_;
-    t_.number("young", bolt_.young, {.meaning = "Young's modulus of the bar.", .unit = "Pa", .above = 0.0});
+    t_.number(
+        "young", bolt_.young,
+        {.meaning = "Young's modulus of the bar.", .unit = "Pa", .above = 0.0, .usual = &usual::bar_young});
     t_.number("yield", bolt_.yield,
               {.meaning = "Largest force of the bar, at which it yields and keeps its elongation.",
                .unit = "N",
                .above = 0.0,
                .fallback = "it never yields",
-               .usual = &usual::yield});
+               .usual = &usual::bolt_force});
     t_.number(
         "rupture_strain", bolt_.rupture_strain,
         {.meaning =
@@ -142,7 +145,8 @@ class BoltReader {
          .at_most = 10.0,
          .fallback = "it never breaks",
          .applies = bolt_.yield.has_value() || any(),
-         .condition = "yield"});
+         .condition = "yield",
+         .usual = &usual::rupture_strain});
   }
 
   Rule grouted(Rule rule) const {
@@ -157,12 +161,14 @@ class BoltReader {
                        .unit = "N/m per m of bolt",
                        .required = !bolt_.is_anchored && !any(),
                        .above = 0.0,
-                       .fallback = "required"}));
+                       .fallback = "required",
+                       .usual = &usual::grout_stiffness}));
     t_.number("grout_strength", bolt_.grout_strength,
               grouted({.meaning = "Largest shear force of the grout.",
                        .unit = "N per m of bolt",
                        .above = 0.0,
-                       .fallback = "it never slips"}));
+                       .fallback = "it never slips",
+                       .usual = &usual::grout_strength}));
     std::optional<std::pair<double, double>> part;
     t_.interval(
         "grouted", part,
@@ -191,7 +197,7 @@ class BoltReader {
         {.meaning = "Force that the bolt has at the end of the stage that installs it, a `settle` stage.",
          .unit = "N",
          .at_least = 0.0,
-         .usual = &usual::yield});
+         .usual = &usual::bolt_force});
   }
 
   void read_dowel() {
@@ -199,7 +205,7 @@ class BoltReader {
               grouted({.meaning = "Stiffness across the bolt at a joint that slips; 0: none.",
                        .unit = "N/m",
                        .at_least = 0.0,
-                       .usual = &usual::spring_stiffness}));
+                       .usual = &usual::dowel_stiffness}));
     t_.number("dowel_strength", bolt_.dowel_strength,
               {.meaning = "Largest force across the bolt at a joint. It falls as the force N along the bolt "
                           "comes near its "
@@ -209,7 +215,7 @@ class BoltReader {
                .fallback = "it never yields",
                .applies = bolt_.dowel_stiffness > 0.0 || any(),
                .condition = "dowel_stiffness",
-               .usual = &usual::yield});
+               .usual = &usual::bolt_force});
   }
 
   [[nodiscard]] double length() const { return spec_.excavation >= 0 ? spec_.length : bolt_.length(); }

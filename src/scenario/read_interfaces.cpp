@@ -44,7 +44,9 @@ void read_interface(TableReader& t, InterfaceSpec& spec, const Scenario& scenari
   const auto is_taken = [&](const OwnJoints& joints) {
     return joints.name == spec.name && !(is_named && joints.path.starts_with("interface"));
   };
-  if (!spec.name.empty() && std::ranges::any_of(own_joints(scenario), is_taken))
+  const bool is_of_all =
+      spec.name == "joints" || spec.name == "frame";  // words where joints are chosen by name
+  if (!spec.name.empty() && (is_of_all || std::ranges::any_of(own_joints(scenario), is_taken)))
     t.fail("name", fmt::format("'{}', which other joints have", spec.name), "a name of its own");
   read_joint_keys_of(t, spec.joints, scenario.joints);
 }

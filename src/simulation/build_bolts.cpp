@@ -66,7 +66,7 @@ class BoltBuilder {
     if (bolt_.is_anchored) return build_anchored();
     std::vector<std::size_t> joints;  // by the piece before
     for (std::size_t j = 0; j + 1 < pieces_.size(); ++j) {
-      if (moves(j, j + 1) && at_joint(j).capacity > 0.0) joints.push_back(j);
+      if (moves(j, j + 1) && at_joint(j, bolt_.has_plate).capacity > 0.0) joints.push_back(j);
     }
     for (std::size_t i = 0; i < joints.size(); ++i)
       build_joint(joints[i], joints.size() == 1 ? bolt_.name : fmt::format("{}.{}", bolt_.name, i + 1));
@@ -120,23 +120,25 @@ class BoltBuilder {
   }
 
   /// Of the joint behind piece j. What is between the pieces is free.
-  [[nodiscard]] loading::BoltAtJoint at_joint(std::size_t j) const {
+  [[nodiscard]] loading::BoltAtJoint at_joint(std::size_t j, bool has_plate) const {
     const auto [from, to] = bolt_.grouted;
     const double out = pieces_[j].to, in = std::max(pieces_[j + 1].from, out);
     const double head = std::max(std::min(to, out) - from, 0.0), toe = std::max(to - std::max(from, in), 0.0);
-    return bolt_at_joint(bolt_,
-                         BoltSide(bolt_, head > 0.0 ? out - std::min(to, out) : out, head, bolt_.has_plate),
+    return bolt_at_joint(bolt_, BoltSide(bolt_, head > 0.0 ? out - std::min(to, out) : out, head, has_plate),
                          BoltSide(bolt_, in - out + std::max(from - in, 0.0), toe, false));
   }
 
   void build_joint(std::size_t j, const std::string& name) const {
     const BoltPiece &a = pieces_[j], &b = pieces_[j + 1];
-    const loading::BoltAtJoint joint = at_joint(j);
+    const loading::BoltAtJoint joint = at_joint(j, bolt_.has_plate);
     const double half = 0.5 * bolt_.active_length;
     const std::pair drawn{j == 0 ? 0.0 : 0.5 * (a.from + a.to),
                           j + 2 == pieces_.size() ? bolt_.length() : 0.5 * (b.from + b.to)};
     dynamics::PointSpring bar = spring_of("bolt", name);
     set_bar(bar, joint.stiffness, joint.capacity, bolt_.active_length);
+    // A plate holds the head that is pulled into the rock. A bar that is pushed out takes it along.
+    bar.push = at_joint(j, false).capacity / bolt_.spacing;
+    bar.pulls_only = bar.push == 0.0;
     const auto number = static_cast<int>(to_.springs.size());
     add(bar, a, b, {std::max(a.to - half, a.from), std::min(b.from + half, b.to)}, drawn);
     if (bolt_.dowel_stiffness <= 0.0) return;

@@ -4,13 +4,15 @@
 #include <map>
 #include <tuple>
 
+#include "cutting/interfaces.h"
+
 namespace keyblock::simulation {
 namespace {
 
 /// Kind, set or map, and trace.
 using Key = std::tuple<cutting::EdgeKind, int, int>;
 
-/// m, half of the edges of all blocks: a joint has two sides.
+/// m, half of the edges of all blocks: a joint has two sides. Of the sides of an interface one is marked.
 std::map<Key, double> lengths(const RunSetup& setup) {
   std::map<Key, double> lengths;
   for (const cutting::CutBlock& block : setup.system.blocks) {
@@ -19,7 +21,8 @@ std::map<Key, double> lengths(const RunSetup& setup) {
       for (std::size_t k = 0; k < ring.size(); ++k) {
         const cutting::EdgeLabel label = block.labels[r][k];
         const int trace = setup.joints.place_of_trace(label) < 0 ? -1 : label.trace;
-        lengths[{label.kind, label.index, trace}] += 0.5 * norm(ring[(k + 1) % ring.size()] - ring[k]);
+        const double share = cutting::is_of_interface(setup.system, label) ? 1.0 : 0.5;
+        lengths[{label.kind, label.index, trace}] += share * norm(ring[(k + 1) % ring.size()] - ring[k]);
       }
     }
   }

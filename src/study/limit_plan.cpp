@@ -70,11 +70,14 @@ void check_since(const LimitRequest& request, std::span<const record::Stage> sta
 /// A measure of elements is not known where none has a limit: it would never be above anything.
 void check_measure(const LimitRequest& request, const scenario::Scenario& scenario) {
   const auto yields = [](const loading::Spring& spring) { return spring.yield.has_value(); };
-  if (std::ranges::any_of(scenario.springs, yields)) return;
+  const auto gives_way = [](const scenario::BoltSpec& spec) {
+    return spec.bolt.yield || spec.bolt.grout_strength || spec.bolt.dowel_strength;
+  };
+  if (std::ranges::any_of(scenario.springs, yields) || std::ranges::any_of(scenario.bolts, gives_way)) return;
   record::for_damage_fields([&](const auto& field) {
     if (request.criterion.measure == field.name && field.column.table == record::DamageTable::elements)
       refuse("--until", '"' + request.criterion.measure + '"',
-             "a measure that the scenario has: no [[spring]] has a yield");
+             "a measure that the scenario has: no [[spring]] or [[bolt]] has a yield");
   });
 }
 
@@ -149,10 +152,10 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
       !request.criterion.by_standing && std::string_view(limit_default(read).criterion) != "fallen";
   if (request.scan == 0) request.scan = scan_of(request.key);
   if (request.realizations > 1 && read.joint_sets.empty() && !scenario::has_random_strengths(read))
-    warnings.push_back(
-        fmt::format("--realizations {}: nothing is random without a [[joint_set]]; all limits are the same, "
-                    "and their interval says nothing",
-                    request.realizations));
+    warnings.push_back(fmt::format(
+        "--realizations {}: nothing is random, neither joint sets nor strengths; all limits are the same, "
+        "and their interval says nothing",
+        request.realizations));
   check_since(request, read.stages);
   for (std::string& warning : warnings_of_ends(plan, request)) {
     if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(std::move(warning));

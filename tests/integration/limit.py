@@ -103,6 +103,24 @@ class KnownAnswers(Limit):
         self.check_bracket(1.5 * weight, 0.005, out="used")
         self.assertIn("largest utilization of an element", said.stdout)
 
+    def test_the_strength_at_which_a_bolt_yields(self):
+        """Of a block that hangs on it, one bolt every 2 m."""
+        weight = 2 * 2600.0 * 9.81
+        block = '[[block]]\nname = "{}"\nouter = [[0, {}], [2, {}], [2, {}], [0, {}]]\nfixed = {}\n'
+        keys = "diameter = 0.025\nspacing = 2.0\nyield = 400e3\ngrout_stiffness = 8e9\ngrout_strength = 400e3\n"
+        self.write(
+            "hung.toml",
+            "[rock]\ndensity = 2600\nyoung = 1e10\npoisson = 0.2\n[joints]\nfriction = 30\n[time]\nstep = 0.002\n"
+            + block.format("roof", 1, 1, 3, 3, "true")
+            + block.format("hung", 0, 0, 1, 1, "false")
+            + '[[bolt]]\nname = "b"\nfrom = [1, 0]\nto = [1, 2.5]\n'
+            + keys
+            + '[[stage]]\nname = "hangs"\nkind = "settle"\n',
+        )
+        words = ("hung.toml", "--key", "bolt.b.yield", "--from", 400e3, "--to", 40e3, "--tolerance", 0.005)
+        self.limit(*words, "--until", "yielded_elements")
+        self.check_bracket(2 * weight, 0.005)
+
     def test_pressure_under_a_key_block(self):
         self.limit(CASES / "held_block.toml", "--key", "excavation.room.pressure", "--from", 5e4, "--to", 0, "--until", "moved", "--tolerance", 0.005)
         self.check_bracket(2600 * 9.81, 0.01)

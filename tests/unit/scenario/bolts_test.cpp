@@ -96,7 +96,9 @@ arc = [60.0, 120.0]
 count = 3
 length = 2.5
 diameter = 0.025
+yield = 245.0e3
 grout_stiffness = 8.0e9
+grout_strength = 400.0e3
 [[stage]]
 name = "open"
 kind = "settle"
@@ -172,6 +174,49 @@ TEST(Bolts, ThatSeemOddAreToldOf) {
   EXPECT_THAT(
       bolt_warnings({across, "stage.support.install=[]", "stage.open.install=[]"}),
       Contains(HasSubstr("bolt.one: one crosses rock that the stage 'open' excavates, and ends there")));
+}
+
+TEST(Bolts, WithoutALimitAreToldOf) {
+  const std::string bar =
+      "{name='crown', excavation='tunnel', arc=[60, 120], count=3, length=2.5, diameter=0.025";
+  EXPECT_THAT(bolt_warnings({"bolt=[" + bar + ", grout_stiffness=8e9}]"}),
+              ::testing::ElementsAre(HasSubstr(
+                  "its bar never yields, without yield, and its grout never slips, without grout_strength")));
+  EXPECT_THAT(bolt_warnings({"bolt=[" + bar + ", yield=245e3, grout_stiffness=8e9}]"}),
+              ::testing::ElementsAre(HasSubstr("crown: its grout never slips, without grout_strength;")));
+  EXPECT_THAT(bolt_warnings({"bolt=[" + bar + ", kind='anchored'}]"}),
+              ::testing::ElementsAre(HasSubstr("crown: its bar never yields, without yield;")));
+}
+
+// The plate of a bolt whose ends are exchanged holds rock in its middle, and the grout of the far side counts for nothing.
+TEST(Bolts, WithTheHeadInsideOfTheRockAreToldOf) {
+  const std::string keys = ", diameter=0.025, yield=245e3, grout_stiffness=1e9, grout_strength=4e5}]";
+  const std::string install = "stage.support.install=['one']";
+  EXPECT_THAT(bolt_warnings({"bolt=[{name='one', from=[0, 1.5], to=[0, 4]" + keys, install}), IsEmpty());
+  EXPECT_THAT(
+      bolt_warnings({"bolt=[{name='one', from=[0, 4], to=[0, 1.5]" + keys, install}),
+      ::testing::ElementsAre(HasSubstr("the plate of one lies 1 m inside of the rock; `from` is the head")));
+  EXPECT_THAT(bolt_warnings({"bolt=[{name='one', from=[0, 4], to=[0, 1.5], plate=false" + keys, install}),
+              IsEmpty());
+}
+
+TEST(Bolts, OfAnOpeningThatIsNotThereYetAreToldOf) {
+  const auto before = Contains(HasSubstr("bolt.crown: is installed before excavation.tunnel is excavated"));
+  EXPECT_THAT(bolt_warnings({"stage.support.install=[]"}), before);
+  EXPECT_THAT(bolt_warnings({"stage.support.install=[]", "stage.open.install=['crown']"}), IsEmpty());
+  EXPECT_THAT(bolt_warnings({"stage=[{name='first', kind='settle', install=['crown']}, {name='open', "
+                             "kind='settle', excavate=['tunnel']}]"}),
+              before);
+}
+
+TEST(Bolts, InOtherUnitsAreToldOf) {
+  const auto told = [](const char* change) { return bolt_warnings({change}); };
+  EXPECT_THAT(told("bolt.crown.yield=245"), Contains(HasSubstr("was it in kN? That is 2.45e+05 N")));
+  EXPECT_THAT(told("bolt.crown.rupture_strain=10"), Contains(HasSubstr("was it in percent? That is 0.1")));
+  EXPECT_THAT(told("bolt.crown.diameter=0.25"), Contains(HasSubstr("usual is")));
+  EXPECT_THAT(told("bolt.crown.grout_strength=400"), Contains(HasSubstr("was it in kN per m?")));
+  EXPECT_THAT(told("bolt.crown.grout_stiffness=8e3"), Contains(HasSubstr("was it in MN/m per m?")));
+  EXPECT_THAT(told("bolt.crown.young=210"), Contains(HasSubstr("was it in GPa?")));
 }
 
 }  // namespace

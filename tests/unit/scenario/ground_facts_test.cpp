@@ -55,6 +55,18 @@ TEST(GroundFacts, GiveDepthAndStrengthWhereTheyAreGiven) {
             "σxx -2 MPa, σyy -4 MPa, σxy 0 (compression negative)");
 }
 
+TEST(GroundFacts, TellWhatBoltsThereAre) {
+  const std::string keys = ", diameter=0.025, yield=245e3, grout_stiffness=8e9, grout_strength=4e5";
+  EXPECT_EQ(value(facts({"bolt=[{name='crown', excavation='gallery', arc=[30, 150], count=5, length=1.5, "
+                         "spacing=1.2, pretension=5e4" +
+                         keys + "}]"}),
+                  "bolts “crown”"),
+            "5 of 1.5 m along “gallery”, grouted, every 1.2 m, yield 245 kN, pretension 50 kN");
+  EXPECT_EQ(value(facts({"bolt=[{name='one', from=[0, 1], to=[0, 3], diameter=0.025, kind='anchored'}]"}),
+                  "bolts “one”"),
+            "one of 2 m from (0, 1), anchored, every 1 m, no yield");
+}
+
 TEST(GroundFacts, OfSeveralScenariosHaveAllTheirValues) {
   GroundFacts merged;
   for (const char* friction : {"20", "30", "20"})

@@ -256,6 +256,20 @@ TEST(Bolts, RememberAcceptedStepsAlone) {
 }
 
 // A short bolt that nothing presses is slack.
+// A plate holds a bar that is pulled. Pushed out of the rock, the bar takes its plate along.
+TEST(Bolts, PlatesHoldNothingThatIsPushedOut) {
+  Scene scene = column();
+  scene.setup.bolts = {grouted({0.5, 0.9}, {0.5, 4.5})};
+  scene.setup.bolts[0].has_plate = true;
+  BoltSprings made;
+  add_bolts(scene.setup, build_model(scene.setup), made);
+  ASSERT_EQ(made.springs.size(), 3u);
+  EXPECT_NEAR(made.springs[0].yield, 7e5 * 3.5, 1.0);  // all of the far side, as the plate holds the near one
+  EXPECT_NEAR(made.springs[0].least(), -7e5 * 0.1, 1.0);
+  EXPECT_NEAR(made.springs[1].least(), -7e5 * 1.1, 1.0);
+  EXPECT_NEAR(made.springs[2].least(), -7e5 * 1.5, 1.0);  // of the far side
+}
+
 TEST(Bolts, AnchoredOnesDoNotPress) {
   Scene scene(1e11, 30.0);
   scene.setup.gravity = {};
