@@ -36,9 +36,9 @@ void write_joints(hid_t file, const record::ModelRecord& model) {
   write_array<std::int16_t>(group, "edge_index", {count}, index);
   write_array<std::int32_t>(group, "trace", {count}, trace);
   for (const record::JointField& field : record::joint_fields) {
-    std::vector<double> numbers;
-    for (const record::JointRecord& joint : model.joints) numbers.push_back(joint.*field.number);
-    write_array<double>(group, field.name, {count}, numbers);
+    std::vector<double> column;
+    for (const record::JointRecord& joint : model.joints) column.push_back(joint.*field.number);
+    write_array<double>(group, field.name, {count}, column);
   }
 }
 
@@ -55,9 +55,9 @@ void read_joints(hid_t file, record::ModelRecord& model) {
                    trace.values[k]};
   }
   for (const record::JointField& field : record::joint_fields) {
-    const auto numbers = read_column<double>(group, field.name);
-    require(numbers.rows() == kind.rows(), "joints");
-    for (std::size_t k = 0; k < numbers.rows(); ++k) model.joints[k].*field.number = numbers.values[k];
+    const auto column = read_column<double>(group, field.name);
+    require(column.rows() == kind.rows(), "joints");
+    for (std::size_t k = 0; k < column.rows(); ++k) model.joints[k].*field.number = column.values[k];
   }
 }
 

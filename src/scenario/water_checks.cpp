@@ -15,7 +15,7 @@ namespace {
 /// m of water over the base of the model that nobody has in rock: heights may have been meant in other units.
 constexpr double most_head = 2000.0;
 /// Of a water table against the normal of gravity, that rounding leaves.
-constexpr double least_slope = 1e-6;
+constexpr double least_tilt = 1e-6;
 
 /// Of all joints of their own: they hold no water, whichever there is.
 std::vector<bool> dry_by_themselves(const Scenario& scenario) {
@@ -92,7 +92,7 @@ class WaterChecks {
   // Water at rest is level, and level is normal to gravity.
   void check_gravity() {
     const Vec2 g = scenario_.gravity;
-    if (scenario_.waters.empty() || std::abs(g.x) <= least_slope * norm(g)) return;
+    if (scenario_.waters.empty() || std::abs(g.x) <= least_tilt * norm(g)) return;
     warn(
         "{}: gravity is not straight down, by tilt or gravity = [{:.4g}, {:.4g}]; a table that is level in "
         "the "

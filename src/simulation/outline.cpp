@@ -240,7 +240,7 @@ void build_surface(Model& model, std::span<const int> joint) {
 }
 
 void find_seams(Model& model) {
-  constexpr double straight = 1e-6;  // sine of the angle between the two edges
+  constexpr double sine_of_straight = 1e-6;  // sine of the angle between the two edges
   contact::Surface& surface = model.surface;
   std::vector<std::uint8_t> seams(surface.block.size(), 0);
   for (std::size_t v = 0; v < seams.size(); ++v) {
@@ -250,7 +250,7 @@ void find_seams(Model& model) {
     if (one == other || one.fused || other.fused) continue;
     const Vec2 in = normalized(surface.position[v] - surface.position[before]),
                out = normalized(surface.position[at(surface.next[v])] - surface.position[v]);
-    if (dot(in, out) > 0.0 && std::abs(cross(in, out)) <= straight) seams[v] = 1;
+    if (dot(in, out) > 0.0 && std::abs(cross(in, out)) <= sine_of_straight) seams[v] = 1;
   }
   if (std::ranges::find(seams, 1) != seams.end()) surface.is_seam = std::move(seams);
 }

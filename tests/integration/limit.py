@@ -435,7 +435,7 @@ class Refusals(Limit):
     def test_measures_that_the_scenario_has_no_number_for(self):
         for measure in ("largest_utilization", "yielded_elements"):
             said = self.limit(INCLINE, "--key", "joints.friction", "--from", 45, "--to", 5, "--until", measure, expect=1).stderr
-            self.assertIn("no [[spring]] has a yield", said)
+            self.assertIn("no [[spring]] or [[bolt]] has a yield", said)
             self.assertFalse((self.folder / "out").exists())
         said = self.limit(INCLINE, "--key", "joints.friction", "--from", 45, "--to", 5, "--until", "fallen_depth_m", expect=1).stderr
         self.assertIn("this model has no fallen_depth_m: it is null in summary.json", said)

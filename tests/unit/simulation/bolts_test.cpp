@@ -92,7 +92,7 @@ TEST(Bolts, AlongAJointAreInOneBlock) {
   for (const double x : {0.0, 1.0})
     for (const double y : {0.0, 1.0}) scene.rectangle({x, y}, 1.0, 1.0);
   scene.setup.bolts = {grouted({1.0, 0.2}, {1.0, 2.8}), grouted({0.1, 0.1}, {1.9, 1.9})};
-  for (const std::size_t k : {0, 1}) {
+  for (const std::size_t k : {0u, 1u}) {
     const std::vector<BoltPiece> pieces = bolt_pieces(scene.setup, k);
     for (std::size_t j = 0; j + 1 < pieces.size(); ++j)
       EXPECT_NEAR(pieces[j].to, pieces[j + 1].from, 1e-5) << k << " " << j;
@@ -250,7 +250,7 @@ TEST(Bolts, RememberAcceptedStepsAlone) {
   const std::vector<record::ElementState> bolts = element_states(s.model, s.state);
   const double way = 1.0 - s.centroid(1).y - 0.5;
   EXPECT_GT(way, 0.02);
-  for (const std::size_t k : {0, 2}) EXPECT_NEAR(bolts[k].yielded, way, 1e-6) << k;
+  for (const std::size_t k : {0u, 2u}) EXPECT_NEAR(bolts[k].yielded, way, 1e-6) << k;
   EXPECT_FALSE(bolts[1].present);
   EXPECT_NEAR(bolts[1].yielded, 5e-3, 2.1e-3);
 }
