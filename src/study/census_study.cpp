@@ -12,6 +12,7 @@
 #include "results/csv.h"
 #include "results/json_parts.h"
 #include "scenario/key_blocks.h"
+#include "study/estimate_json.h"
 #include "study/summaries.h"
 
 namespace keyblock::study {
@@ -39,12 +40,6 @@ std::vector<double> sample_of(const CensusStudy& study, const CensusMeasure& mea
     if (one.error.empty()) sample.push_back(measure.of(census::totals(one.census), one.census.wall));
   }
   return sample;
-}
-
-ordered_json estimate_json(const Estimate& estimate) {
-  return {{"value", results::number_or_null(estimate.value)},
-          {"low", results::number_or_null(estimate.low)},
-          {"high", results::number_or_null(estimate.high)}};
 }
 
 ordered_json description_json(const statistics::Description& description) {

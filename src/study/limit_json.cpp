@@ -8,6 +8,7 @@
 #include "record/standing.h"
 #include "results/csv.h"
 #include "results/json_parts.h"
+#include "study/estimate_json.h"
 #include "study/limit_statistics.h"
 #include "study/limit_words.h"
 
@@ -88,12 +89,6 @@ ordered_json realization_json(const RealizationLimit& limit) {
           {"error", error},
           {"strengths", strengths},
           {"trials", trials}};
-}
-
-ordered_json estimate_json(const statistics::Estimate& estimate) {
-  return {{"value", results::number_or_null(estimate.value)},
-          {"low", results::number_or_null(estimate.low)},
-          {"high", results::number_or_null(estimate.high)}};
 }
 
 ordered_json mean_json(const LimitResult& result) {
