@@ -126,21 +126,33 @@ void PointSprings::change_laws(const StepProblem& problem, std::size_t first, st
                                std::vector<LawChange>& changes) const {
   const SpringArray& rows = problem.springs();
   for (std::size_t k = 0; k < springs_.size(); ++k) {
-    const std::size_t c = first + k;
-    const PointSpring& spring = springs_[k];
-    if (rows.ks[c] == 0.0) continue;
-    if (spring.across >= 0) {
-      const bool is_off = breaks(rows, first, k);
-      const double bound = is_off ? 0.0 : strength_across(k, rows.force(first + bar_of(k)).shear);
-      if (std::abs(bound - rows.bound[c]) > settled_bound * spring.yield || (is_off && rows.bound[c] > 0.0))
-        changes.push_back({c, is_off ? HUGE_VAL : 0.0, -bound, bound});
-      continue;
+    if (rows.ks[first + k] == 0.0) continue;
+    if (springs_[k].across >= 0) {
+      change_dowel(rows, first, k, changes);
+    } else {
+      change_bar(problem, first, k, memory, changes);
     }
-    if (std::isinf(spring.rupture) || breaks(rows, first, k) || is_held(k, memory)) continue;
-    const double before = stretch_of(problem.model(), problem.state(), k, memory),
-                 yields = std::abs(memory[yielded(k)] + end_of(problem, first, k, before).beyond);
-    if (yields > spring.rupture) changes.push_back({c, yields / spring.rupture - 1.0, 0.0, 0.0});
   }
+}
+
+/// Its strength is that beside the force of its bar, and nothing where the bar is broken.
+void PointSprings::change_dowel(const SpringArray& rows, std::size_t first, std::size_t k,
+                                std::vector<LawChange>& changes) const {
+  const std::size_t c = first + k;
+  const bool is_off = breaks(rows, first, k);
+  const double bound = is_off ? 0.0 : strength_across(k, rows.force(first + bar_of(k)).shear);
+  if (std::abs(bound - rows.bound[c]) > settled_bound * springs_[k].yield || (is_off && rows.bound[c] > 0.0))
+    changes.push_back({c, is_off ? HUGE_VAL : 0.0, -bound, bound});
+}
+
+/// It breaks where it has yielded by more than it can.
+void PointSprings::change_bar(const StepProblem& problem, std::size_t first, std::size_t k,
+                              std::span<const double> memory, std::vector<LawChange>& changes) const {
+  const double rupture = springs_[k].rupture;
+  if (std::isinf(rupture) || breaks(problem.springs(), first, k) || is_held(k, memory)) return;
+  const double before = stretch_of(problem.model(), problem.state(), k, memory),
+               yields = std::abs(memory[yielded(k)] + end_of(problem, first, k, before).beyond);
+  if (yields > rupture) changes.push_back({first + k, yields / rupture - 1.0, 0.0, 0.0});
 }
 
 std::vector<PointSprings::Now> PointSprings::now(const Model& model, const State& state,

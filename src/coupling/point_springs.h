@@ -129,6 +129,10 @@ class PointSprings final : public Coupling, public StagedSupports {
   }
   /// N per thickness, of a dowel whose bar has this force.
   [[nodiscard]] double strength_across(std::size_t k, double along) const;
+  void change_dowel(const SpringArray& rows, std::size_t first, std::size_t k,
+                    std::vector<LawChange>& changes) const;
+  void change_bar(const StepProblem& problem, std::size_t first, std::size_t k,
+                  std::span<const double> memory, std::vector<LawChange>& changes) const;
   [[nodiscard]] End end_of(const StepProblem& problem, std::size_t first, std::size_t k, double before) const;
   /// Whether it broke in the step at hand.
   [[nodiscard]] bool breaks(const SpringArray& rows, std::size_t first, std::size_t k) const {

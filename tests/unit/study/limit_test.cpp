@@ -371,7 +371,10 @@ TEST(LimitStatistics, HaveMeanAndProbabilityOfFailureWithIntervals) {
 
 TEST(LimitStatistics, KnowWhichStrengthsTheLimitsHangOn) {
   std::vector<double> values;
-  for (int k = 0; k < 36; ++k) values.push_back(1.0 + 0.02 * (k % 6) + 0.001 * (k / 6));
+  for (int k = 0; k < 36; ++k) {
+    const int row = k / 6;
+    values.push_back(1.0 + 0.02 * (k % 6) + 0.001 * row);
+  }
   LimitResult result = factors(values);
   for (int k = 0; k < 36; ++k)
     result.realizations[static_cast<std::size_t>(k)].strengths = {{"bedding.cohesion", k / 6},

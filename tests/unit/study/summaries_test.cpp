@@ -228,7 +228,8 @@ TEST(Summaries, TellWhatTheMeasureOfALevelHangsOn) {
   study.levels = {{"light", "fallen_area_m2", 1.0}, {"heavy", "fallen_area_m2", 9.0}};
   study.stage = "quake";
   for (int k = 0; k < 49; ++k) {
-    const double friction = k % 7, cohesion = k / 7;
+    const int row = k / 7;
+    const double friction = k % 7, cohesion = row;
     study.runs.push_back(made_run(k, {"1"}, 2.0, 2.0 * friction + cohesion));
     study.runs.back().strengths = {
         {"set.cohesion", cohesion}, {"set.friction", friction}, {"set.tension", 4.0}};
