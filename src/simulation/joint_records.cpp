@@ -12,7 +12,8 @@ namespace {
 /// Kind, set or map, and trace.
 using Key = std::tuple<cutting::EdgeKind, int, int>;
 
-/// m, half of the edges of all blocks: a joint has two sides. Of the sides of an interface one is marked.
+/// m, half of what joints have of the edges of all blocks: a joint has two sides. Edges may reach beyond an interface, so that their labels do not say
+/// what they have of it.
 std::map<Key, double> lengths(const RunSetup& setup) {
   std::map<Key, double> lengths;
   for (const cutting::CutBlock& block : setup.system.blocks) {
@@ -21,10 +22,15 @@ std::map<Key, double> lengths(const RunSetup& setup) {
       for (std::size_t k = 0; k < ring.size(); ++k) {
         const cutting::EdgeLabel label = block.labels[r][k];
         const int trace = setup.joints.place_of_trace(label) < 0 ? -1 : label.trace;
-        const double share = cutting::is_of_interface(setup.system, label) ? 1.0 : 0.5;
-        lengths[{label.kind, label.index, trace}] += share * norm(ring[(k + 1) % ring.size()] - ring[k]);
+        if (cutting::is_of_interface(setup.system, label)) continue;
+        lengths[{label.kind, label.index, trace}] += 0.5 * norm(ring[(k + 1) % ring.size()] - ring[k]);
       }
     }
+  }
+  for (const cutting::InterfaceFace& face : cutting::interface_faces(setup.system)) {
+    const Ring& ring = setup.system.blocks[face.block].polygon.ring(face.ring);
+    const double edge = norm(ring[(face.edge + 1) % ring.size()] - ring[face.edge]);
+    lengths[{face.joint.kind, face.joint.index, -1}] += 0.5 * (face.to - face.from) * edge;
   }
   return lengths;
 }

@@ -5,6 +5,7 @@
 #include "guide_snippet.h"
 #include "scenario/ground_facts.h"
 #include "scenario/own_joints.h"
+#include "simulation/joint_records.h"
 #include "warnings_of.h"
 
 namespace keyblock::scenario {
@@ -43,6 +44,17 @@ TEST(Interface, IsTheLabelOfEdgesThatLieAlongIt) {
   };
   EXPECT_EQ(labels(0), 0);
   EXPECT_EQ(labels(1), 1);
+}
+
+// Whichever of the edges has its label: one, both, or none of them.
+TEST(Interface, HasTheLengthAlongWhichBlocksTouch) {
+  const auto length = [](const std::string& top) {
+    const auto setup = build_setup(parse(two_blocks, {contact, "block.top.outer=" + top}), 0, nullptr);
+    return simulation::joint_records(setup).at(0).length;
+  };
+  EXPECT_DOUBLE_EQ(length("[[1, 1], [2, 1], [2, 2], [1, 2]]"), 1.0);
+  EXPECT_DOUBLE_EQ(length("[[0, 1], [4, 1], [4, 2], [0, 2]]"), 4.0);
+  EXPECT_DOUBLE_EQ(length("[[3, 1], [6, 1], [6, 2], [3, 2]]"), 1.0);
 }
 
 TEST(Interface, ComesAfterJointSetsAndBeforeTraceMaps) {
