@@ -22,7 +22,7 @@ struct PointSpring {
   int staged = -1;  ///< State::installed that says whether it is there; −1: always
   const char* kind = "spring";  ///< Element::kind
   double spacing = 0.0;         ///< m, Element::spacing
-  double push = HUGE_VAL;       ///< N, the largest force that presses its ends apart
+  double push = HUGE_VAL;       ///< N per thickness, the largest force that presses its ends apart
   bool pulls_only = false;      ///< it is slack where it is shorter than without force
   double rupture =
       std::numeric_limits<double>::infinity();  ///< m of yielded elongation, beyond which it breaks

@@ -93,7 +93,8 @@ class BoltBuilder {
     spring.stiffness = stiffness / bolt_.spacing;
     spring.yield = capacity / bolt_.spacing;
     spring.pretension = bolt_.pretension / bolt_.spacing;
-    if (bolt_.rupture_strain) spring.rupture = *bolt_.rupture_strain * strained;
+    // Where the grout gives way first, the bar comes out and does not strain.
+    if (bolt_.rupture_strain && capacity == bolt_.yield) spring.rupture = *bolt_.rupture_strain * strained;
   }
   [[nodiscard]] dynamics::MaterialPoint point(const BoltPiece& piece, double from_head) const {
     return material_point(model_, piece.block, place(from_head));

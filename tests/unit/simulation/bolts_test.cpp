@@ -256,6 +256,23 @@ TEST(Bolts, RememberAcceptedStepsAlone) {
 }
 
 // A short bolt that nothing presses is slack.
+TEST(Bolts, BreakWhereTheBarYieldsAndNotWhereTheGroutSlips) {
+  Scene scene = column();
+  scene.setup.bolts = {grouted({0.5, 0.0}, {0.5, 4.5})};
+  loading::Bolt& bolt = scene.setup.bolts[0];
+  bolt.yield = 1e6;  // of the joints at 1, 2 and 3 m the shorter sides hold 0.7, 1.4 and 1.05 MN
+  bolt.rupture_strain = 0.1;
+  BoltSprings made;
+  add_bolts(scene.setup, build_model(scene.setup), made);
+  ASSERT_EQ(made.springs.size(), 3u);
+  EXPECT_NEAR(made.springs[0].yield, 0.7e6, 1.0);
+  EXPECT_TRUE(std::isinf(made.springs[0].rupture));
+  for (const std::size_t k : {1u, 2u}) {
+    EXPECT_EQ(made.springs[k].yield, 1e6);
+    EXPECT_DOUBLE_EQ(made.springs[k].rupture, 0.1 * 0.05);
+  }
+}
+
 // A plate holds a bar that is pulled. Pushed out of the rock, the bar takes its plate along.
 TEST(Bolts, PlatesHoldNothingThatIsPushedOut) {
   Scene scene = column();
