@@ -55,4 +55,19 @@ struct DrawnStrength {
   [[nodiscard]] std::string name() const { return joint + "." + key; }
 };
 
+/// Calls visit(name, value) for all that files have of a strength that was drawn.
+template <class Strength, class Visit>
+void visit_strength(Strength& drawn, const Visit& visit) {
+  visit("joint", drawn.joint);
+  visit("key", drawn.key);
+  visit("unit", drawn.unit);
+  visit("per", drawn.per);
+  visit("traces", drawn.traces);
+  visit("mean", drawn.mean);
+  visit("std", drawn.std);
+  visit("least", drawn.least);
+  visit("largest", drawn.largest);
+  visit("above_peak", drawn.capped);
+}
+
 }  // namespace keyblock::record

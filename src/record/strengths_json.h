@@ -1,4 +1,5 @@
 #pragma once
+#include <utility>
 #include <vector>
 
 #include "record/joint_records.h"
@@ -9,17 +10,11 @@ namespace keyblock::record {
 template <class Json>
 Json strengths_json(const std::vector<DrawnStrength>& strengths) {
   Json rows = Json::array();
-  for (const DrawnStrength& drawn : strengths)
-    rows.push_back({{"joint", drawn.joint},
-                    {"key", drawn.key},
-                    {"unit", drawn.unit},
-                    {"per", drawn.per},
-                    {"traces", drawn.traces},
-                    {"mean", drawn.mean},
-                    {"std", drawn.std},
-                    {"least", drawn.least},
-                    {"largest", drawn.largest},
-                    {"above_peak", drawn.capped}});
+  for (const DrawnStrength& drawn : strengths) {
+    Json row;
+    visit_strength(drawn, [&](const char* name, const auto& value) { row[name] = value; });
+    rows.push_back(std::move(row));
+  }
   return rows;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <iterator>
+#include <type_traits>
 
 #include "core/checked_json.h"
 #include "core/error.h"
@@ -64,17 +65,13 @@ void read_joints(hid_t file, record::ModelRecord& model) {
 std::vector<record::DrawnStrength> read_strengths(const ordered_json& json) {
   std::vector<record::DrawnStrength> strengths;
   for (const ordered_json& row : json) {
-    record::DrawnStrength& drawn = strengths.emplace_back();
-    row.at("joint").get_to(drawn.joint);
-    row.at("key").get_to(drawn.key);
-    row.at("unit").get_to(drawn.unit);
-    row.at("per").get_to(drawn.per);
-    row.at("traces").get_to(drawn.traces);
-    drawn.mean = number(row.at("mean"));
-    drawn.std = number(row.at("std"));
-    drawn.least = number(row.at("least"));
-    drawn.largest = number(row.at("largest"));
-    row.at("above_peak").get_to(drawn.capped);
+    visit_strength(strengths.emplace_back(), [&](const char* name, auto& value) {
+      if constexpr (std::is_same_v<decltype(value), double&>) {
+        value = number(row.at(name));
+      } else {
+        row.at(name).get_to(value);
+      }
+    });
   }
   return strengths;
 }

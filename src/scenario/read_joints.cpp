@@ -257,20 +257,11 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
 
 constexpr JointDefaults joint_defaults{JointsOf::numbers,      true,      "0", "", "20 young per metre",
                                        "0.4 normal_stiffness", "friction"};
-constexpr JointDefaults set_defaults{JointsOf::set,
-                                     false,
-                                     "of [joints]",
-                                     "of [joints]",
-                                     "of [joints]",
-                                     "of [joints]",
-                                     "of [joints]; else friction"};
-constexpr JointDefaults map_defaults{JointsOf::map,
-                                     false,
-                                     "of [joints]",
-                                     "of [joints]",
-                                     "of [joints]",
-                                     "of [joints]",
-                                     "of [joints]; else friction"};
+/// Of joints that have properties of their own.
+constexpr JointDefaults own_defaults(JointsOf of) {
+  constexpr std::string_view standard = "of [joints]";
+  return {of, false, standard, standard, standard, standard, "of [joints]; else friction"};
+}
 
 void read_set_keys(TableReader& t, JointKeys& joints) {
   t.number("strength_factor", joints.strength_factor,
@@ -304,9 +295,8 @@ void check_joint_keys(TableReader& t, const JointKeys& own, const JointKeys& sta
   }
 }
 
-void read_keys_of(TableReader& t, JointKeys& joints, const JointDefaults& defaults,
-                  const JointKeys& standard) {
-  read_joint_keys(t, joints, defaults);
+void read_keys_of(TableReader& t, JointKeys& joints, JointsOf of, const JointKeys& standard) {
+  read_joint_keys(t, joints, own_defaults(of));
   read_set_keys(t, joints);
   check_joint_keys(t, joints, standard);
 }
@@ -351,7 +341,7 @@ void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standar
   read_distribution(t, "gap", set.gap, true, "Rock bridge between two traces on one line; 0: none.");
   t.boolean("gap_bonds", spec.gap_bonds,
             {.meaning = "The gaps are joints as well, with the strength of [rock_bridge]."});
-  read_keys_of(t, spec.joints, set_defaults, standard);
+  read_keys_of(t, spec.joints, JointsOf::set, standard);
 }
 
 void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard) {
@@ -385,15 +375,13 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
           .required = !t.documenting() && !given.empty() && !has_file,
           .fallback = "that of the file"});
   if (map.name.empty()) map.name = map.file.stem().string();
-  read_keys_of(t, map.joints, map_defaults, standard);
+  read_keys_of(t, map.joints, JointsOf::map, standard);
 }
 
 }  // namespace
 
 void read_joint_keys_of(TableReader& t, JointKeys& joints, const JointKeys& standard) {
-  JointDefaults defaults = set_defaults;
-  defaults.of = JointsOf::numbers;  // without traces there is nothing to draw for
-  read_keys_of(t, joints, defaults, standard);
+  read_keys_of(t, joints, JointsOf::numbers, standard);  // without traces there is nothing to draw for
 }
 
 void read_joints(TableReader& root, Scenario& scenario) {
