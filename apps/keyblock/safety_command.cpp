@@ -88,7 +88,8 @@ void add_safety(CLI::App& app) {
   request.key = study::safety_key;
   request.tolerance = 0.005;
   CLI::App* command = app.add_subcommand("safety",
-                                         "Factor of safety: what strength of joints may be divided by, from "
+                                         "Factor of safety, or yield coefficient: what strength of joints "
+                                         "may be divided by, or rock be pushed with, from "
                                          "an equilibrium on, until rock moves and "
                                          "falls");
   add_scenario_file(*command, arguments->limit.scenario);
@@ -99,7 +100,8 @@ void add_safety(CLI::App& app) {
       ->type_name("STAGE");
   command
       ->add_option("--sets", arguments->sets,
-                   "Joint sets, trace maps, or joints, whose strength is reduced, with commas between them; "
+                   "Joint sets, trace maps, interfaces, or joints, whose strength is reduced, with commas "
+                   "between them; "
                    "default: all")
       ->delimiter(',')
       ->type_name("NAME");

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "geometry/vec2.h"
@@ -46,7 +47,7 @@ struct Surface {
   std::vector<int> block, next, previous;   ///< per vertex
   std::vector<CornerKind> kind;             ///< per vertex
   std::vector<int> joint;                   ///< per edge: index of its joint law
-  std::vector<BlockPairJoint> pair_joints;  ///< goes before that of an edge
+  std::vector<BlockPairJoint> pair_joints;  ///< by blocks, ascending; it goes before that of an edge
   /// Per vertex: a straight side of its block goes on there as another joint; empty: nowhere. A contact there stands for both joints.
   std::vector<std::uint8_t> is_seam;
   /// Per edge: share that its start has of the length of joint along it, its end having the rest; empty: a half of each.
@@ -62,9 +63,10 @@ struct Surface {
   /// Index of the joint law of an edge, for a contact of two blocks.
   [[nodiscard]] int joint_of(int edge, int block_a, int block_b) const {
     if (!pair_joints.empty()) {
-      const auto [low, high] = std::minmax(block_a, block_b);
-      for (const BlockPairJoint& pair : pair_joints)
-        if (pair.low == low && pair.high == high) return pair.joint;
+      const auto blocks = [](const BlockPairJoint& pair) { return std::pair(pair.low, pair.high); };
+      const std::pair<int, int> wanted = std::minmax(block_a, block_b);
+      const auto found = std::ranges::lower_bound(pair_joints, wanted, {}, blocks);
+      if (found != pair_joints.end() && blocks(*found) == wanted) return found->joint;
     }
     return joint[static_cast<std::size_t>(edge)];
   }

@@ -67,23 +67,11 @@ double share_below(const Distribution& d, double x) {
   return x < d.mean ? 0.0 : 1.0;
 }
 
-/// x with F₀(x) = p
+/// x with F₀(x) = p. quantile() cuts off what is below zero; here `min` and `max` say where.
 double place_of(const Distribution& d, double p) {
-  switch (d.kind) {
-    case DistributionKind::uniform:
-      return d.mean + (2.0 * p - 1.0) * std::numbers::sqrt3 * d.std;
-    case DistributionKind::normal:
-      return d.mean + d.std * inverse_normal_cdf(p);
-    case DistributionKind::lognormal: {
-      const LogNormal log(d);
-      return std::exp(log.mean + log.deviation * inverse_normal_cdf(p));
-    }
-    case DistributionKind::exponential:
-      return -d.mean * std::log1p(-p);
-    case DistributionKind::constant:
-      break;
-  }
-  return d.mean;
+  if (d.kind == DistributionKind::uniform) return d.mean + (2.0 * p - 1.0) * std::numbers::sqrt3 * d.std;
+  if (d.kind == DistributionKind::normal) return d.mean + d.std * inverse_normal_cdf(p);
+  return quantile(d, p);  // nothing is below zero
 }
 
 double rounded(double x) {

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "rockmass/trace_map_columns.h"
 #include "rockmass/trace_map_reader.h"
 
 namespace keyblock::rockmass {
@@ -79,96 +80,6 @@ std::vector<std::string> names_in(const std::vector<Cell>& cells) {
   return names;
 }
 
-std::optional<std::size_t> place_of(const std::vector<std::string>& names,
-                                    std::initializer_list<std::string_view> wanted) {
-  const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
-    return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
-  });
-  return found == names.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names.begin()));
-}
-
-/// `x y x y …`, with numbers or without.
-bool is_header_of_points(const std::vector<std::string>& names) {
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    if (names[k].empty() || names[k].front() != (k % 2 == 0 ? 'x' : 'y') ||
-        names[k].find_first_not_of("_0123456789", 1) != std::string::npos)
-      return false;
-  }
-  return names.size() >= 4 && names.size() % 2 == 0;
-}
-
-/// Without signs that part words: `START_X` and `start x` are `startx`.
-std::string plain_name(std::string name) {
-  std::erase_if(name, [](char c) { return std::string_view("_ .-()[]").find(c) != std::string_view::npos; });
-  if (name.size() > 2 && name.ends_with('m') &&
-      std::isdigit(static_cast<unsigned char>(name[name.size() - 2])) != 0)
-    name.pop_back();  // `x1 (m)`
-  return name;
-}
-
-using VertexPlaces = std::vector<std::pair<std::size_t, std::size_t>>;
-
-/// Columns of these names, if there are both.
-std::optional<std::pair<std::size_t, std::size_t>> pair_of(const std::vector<std::string>& names,
-                                                           const std::string& x, const std::string& y) {
-  const auto at_x = std::find(names.begin(), names.end(), x), at_y = std::find(names.begin(), names.end(), y);
-  if (at_x == names.end() || at_y == names.end()) return {};
-  return std::pair(static_cast<std::size_t>(at_x - names.begin()),
-                   static_cast<std::size_t>(at_y - names.begin()));
-}
-
-/// `x1 y1 x2 y2 …`, counted from 1 or 0.
-VertexPlaces numbered_vertices(const std::vector<std::string>& names) {
-  for (const auto& [x, y] : {std::pair("x", "y"), std::pair("easting", "northing"), std::pair("e", "n")}) {
-    for (const int first : {1, 0}) {
-      VertexPlaces places;
-      for (int k = first; const auto vertex = pair_of(names, x + std::to_string(k), y + std::to_string(k));
-           ++k)
-        places.push_back(*vertex);
-      if (places.size() >= 2) return places;
-    }
-  }
-  return {};
-}
-
-/// `xstart ystart xend yend`, `START_X …` and the like.
-VertexPlaces named_ends(const std::vector<std::string>& names) {
-  constexpr std::pair<const char*, const char*> ends[] = {
-      {"start", "end"},  {"from", "to"}, {"begin", "end"}, {"beg", "end"},
-      {"first", "last"}, {"ini", "fin"}, {"i", "f"},       {"s", "e"},
-      {"a", "b"},        {"p1", "p2"},   {"pt1", "pt2"},   {"start", "stop"}};
-  for (const auto& [from, to] : ends) {
-    const std::string a = from, b = to;
-    const auto x_first = pair_of(names, "x" + a, "y" + a), x_last = pair_of(names, "x" + b, "y" + b);
-    if (x_first && x_last) return {*x_first, *x_last};
-    const auto first = pair_of(names, a + "x", a + "y"), last = pair_of(names, b + "x", b + "y");
-    if (first && last) return {*first, *last};
-  }
-  return {};
-}
-
-/// `id x y x y`
-VertexPlaces repeated_vertices(const std::vector<std::string>& names) {
-  std::vector<std::size_t> x, y;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    if (names[k] == "x") x.push_back(k);
-    if (names[k] == "y") y.push_back(k);
-  }
-  VertexPlaces places;
-  for (std::size_t k = 0; x.size() >= 2 && x.size() == y.size() && k < x.size(); ++k)
-    places.emplace_back(x[k], y[k]);
-  return places;
-}
-
-/// Columns of the x and y of each vertex of a line, whatever else stands beside them; empty when there are no two vertices.
-VertexPlaces places_of_vertices(const std::vector<std::string>& names) {
-  std::vector<std::string> plain;
-  for (const std::string& name : names) plain.push_back(plain_name(name));
-  VertexPlaces places = numbered_vertices(plain);
-  if (places.empty()) places = named_ends(plain);
-  return places.empty() ? repeated_vertices(plain) : places;
-}
-
 bool are_points(std::vector<Cell> cells, char separator) {
   while (!cells.empty() && cells.back().text.empty()) cells.pop_back();
   return cells.size() >= 4 && cells.size() % 2 == 0 &&
@@ -216,16 +127,16 @@ class TableReader {
       const std::vector<Cell> cells = cells_of(line, separator);
       const std::vector<std::string> names = names_in(cells);
       columns_ = cells.size();
-      const auto x = place_of(names, {"x", "lon", "long", "lng", "longitude"});
-      const auto y = place_of(names, {"y", "lat", "latitude"});
+      const auto x = column_of(names, {"x", "lon", "long", "lng", "longitude"});
+      const auto y = column_of(names, {"y", "lat", "latitude"});
       if (!find_strengths(names, cells, number)) return false;
-      if (const auto trace = place_of(names, {"trace"}); trace && x && y) {
+      if (const auto trace = column_of(names, {"trace"}); trace && x && y) {
         places_ = {*trace, *x, *y};
         if (names[*x] != "x" && names[*y] != "y")
           map_.names_system(number, cells[*x].column, "", "longitude, latitude");
         return header_of_vertices(names, cells, number);
       }
-      if (const auto wkt = place_of(names, {"wkt", "wkt_geom", "geometry", "geom", "the_geom"})) {
+      if (const auto wkt = column_of(names, {"wkt", "wkt_geom", "geometry", "geom", "the_geom"})) {
         kind_ = Kind::wkt;
         places_ = {*wkt, *wkt, *wkt};
         return true;
@@ -251,7 +162,7 @@ class TableReader {
   /// Columns of strengths. False: one is there twice.
   bool find_strengths(const std::vector<std::string>& names, const std::vector<Cell>& cells, int number) {
     for (std::size_t k = 0; k < strength_count; ++k) {
-      strength_places_[k] = place_of(names, {strength_names[k]});
+      strength_places_[k] = column_of(names, {strength_names[k]});
       if (!strength_places_[k]) continue;
       const auto first = names.begin() + static_cast<std::ptrdiff_t>(*strength_places_[k]);
       const auto again = std::find(first + 1, names.end(), strength_names[k]);
@@ -324,7 +235,7 @@ class TableReader {
                                                                       : any_space;
     const std::vector<std::string> names = names_in(cells_of(line, separator));
     for (const char* name : {"trace", "x", "y"}) {
-      if (place_of(names, {name})) continue;
+      if (column_of(names, {name})) continue;
       map_.mistake(number, 1, name, "no such column in \"" + shortened(trimmed(line)) + '"', header_expected,
                    "without a header, a line is a trace: x y x y …");
     }

@@ -125,7 +125,7 @@ void read_safety(TableReader& root, Scenario& scenario) {
   }
 }
 
-void end_with_reduced_strength(Scenario& scenario) {
+void add_trial_stage(Scenario& scenario) {
   if (!scenario.safety || (!scenario.safety->strength_factor && !scenario.safety->k_h)) return;
   const SafetySpec& safety = *scenario.safety;
   std::vector<Stage>& stages = scenario.stages;

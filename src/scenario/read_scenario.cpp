@@ -279,7 +279,7 @@ void read_scenario(TableReader& root, Scenario& scenario) {
   read_safety(root, scenario);
   read_study(root, scenario);
   Consistency(root, scenario).check();
-  if (!root.documenting()) end_with_reduced_strength(scenario);
+  if (!root.documenting()) add_trial_stage(scenario);
 }
 
 }  // namespace keyblock::scenario

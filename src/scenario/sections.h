@@ -60,7 +60,7 @@ void read_safety(TableReader& root, Scenario& scenario);
 void read_joint_names(TableReader& t, std::string_view key, std::vector<std::string>& names,
                       const Rule& rule);
 /// What [safety] makes of the stages, once all is read.
-void end_with_reduced_strength(Scenario& scenario);
+void add_trial_stage(Scenario& scenario);
 /// [study], after all that its keys name.
 void read_study(TableReader& root, Scenario& scenario);
 

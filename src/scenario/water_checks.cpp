@@ -86,7 +86,7 @@ class WaterChecks {
       is_dry[k] = is_dry[k] || (spec.sets && !(*spec.sets)[k]);
     }
     if (!is_dry.empty() && std::ranges::find(is_dry, false) == is_dry.end())
-      warn("{}: all joint sets and trace maps are dry; no joint is wet", spec.path);
+      warn("{}: all joint sets, trace maps and interfaces are dry; no joint is wet", spec.path);
   }
 
   // Water at rest is level, and level is normal to gravity.

@@ -271,6 +271,8 @@ Model build_model(const RunSetup& setup) {
   for (const cutting::Interface& interface : setup.system.interfaces)
     model.surface.pair_joints.push_back(
         {static_cast<int>(interface.low), static_cast<int>(interface.high), law_of_set(interface.joint)});
+  std::ranges::sort(model.surface.pair_joints, {},
+                    [](const contact::BlockPairJoint& pair) { return std::pair(pair.low, pair.high); });
   add_loads(setup, model);
   add_couplings(setup, model);
   add_prescribed_motions(setup, model);

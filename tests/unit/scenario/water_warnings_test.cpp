@@ -57,8 +57,9 @@ TEST(WaterWarnings, OfWaterThatNoStageUses) {
 }
 
 TEST(WaterWarnings, OfJointsThatAreAllDry) {
-  EXPECT_THAT(warnings_of(runnable_domain, {"water={head=8}", "joint_set.0.dry=true"}),
-              Contains(HasSubstr("water: all joint sets and trace maps are dry; no joint is wet")));
+  EXPECT_THAT(
+      warnings_of(runnable_domain, {"water={head=8}", "joint_set.0.dry=true"}),
+      Contains(HasSubstr("water: all joint sets, trace maps and interfaces are dry; no joint is wet")));
   EXPECT_THAT(warnings_of(runnable_domain, {"water={head=8, sets=['bedding']}", "joint_set.0.dry=true"}),
               Contains(HasSubstr("water.sets: names joints that are dry = true, which holds")));
   EXPECT_THAT(warnings_of(runnable_domain, {"water={head=8}"}), Not(Contains(HasSubstr("dry"))));
