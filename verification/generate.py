@@ -106,6 +106,8 @@ scenario = "scenarios/bond_in_tension.toml"
 orders = [1, 2, 3, 4, 6]
 '''
     text += quantity("peak of the pull", "1e3*crossing('block.vy', 5e-4)", "N/m", expected="5e4", tolerance=1e-3)
+    text += quantity("when it breaks", "summary('breaks.0.first_s')", "s", expected="50", tolerance=2e-4)
+    text += quantity("joint that breaks", "summary('breaks.0.length_m')", "m", expected="1", tolerance=1e-9)
     turn = "end('left.uy') - end('right.uy')"
     text += '''
 [[run]]

@@ -32,6 +32,13 @@ def way(dip, peak, residual, slip, time=1.0):
     return x, c * (0.5 * (tangent(peak) + tangent(residual)) * slip + tangent(residual) * (x - slip))
 
 
+def strength_gone(dip, peak, residual, slip):
+    """s: x has come to the slip of weakening."""
+    s, c = G * math.sin(math.radians(dip)), G * math.cos(math.radians(dip))
+    a, b = s - c * tangent(peak), c * (tangent(peak) - tangent(residual)) / slip
+    return math.acosh(1 + slip * b / a) / math.sqrt(b)
+
+
 def sliding(name, title, base, joints="friction = 30.0\nresidual_friction = 25.0\nweakening_slip = 0.02", width=4.0, height=0.4):
     """A block on an incline as gravity that is turned, held by a load that ends with the first stage."""
     load = (
@@ -67,7 +74,12 @@ def slides(scenario_name, name, sets, width=4.0, height=0.4, tolerance=1e-3, ord
                      expected_by_point=str([round(x, 6) for x, _ in expected]), tolerance=tolerance)  # fmt: skip
     text += quantity("work of friction, over the mass", f"summary('energy.friction')/{number(mass)}", "J/kg",
                      expected_by_point=str([round(w, 6) for _, w in expected]), tolerance=tolerance)  # fmt: skip
-    return text
+    if max(strength_gone(*one) for one in sets) > 1.0:
+        return text
+    # Events have the time of the end of their step.
+    text += quantity("all strength that slip takes is gone", "summary('breaks.0.last_s')", "s",
+                     expected_by_point=str([round(strength_gone(*one), 6) for one in sets]), tolerance=0.02)  # fmt: skip
+    return text + quantity("joint that lost it", "summary('breaks.0.length_m')", "m", expected=number(width), tolerance=1e-6)
 
 
 def hop():

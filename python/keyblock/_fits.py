@@ -11,7 +11,7 @@ from .errors import DamagedError
 if TYPE_CHECKING:
     from ._hdf5 import ResultFile
 
-# Sizes by letter: n blocks, v vertices, r starts of rings, m elements, j joints. A letter takes the size where it is met first.
+# Sizes by letter: n blocks, v vertices, r starts of rings, m elements, j joints, w breaks. A letter takes the size where it is met first.
 _MODEL = {
     "model/block_area": "n",
     "model/block_centroid": "n2",
@@ -39,6 +39,7 @@ _MODEL = {
     "elements/name": "m",
     "elements/kind": "m",
     "elements/limit": "m",
+    "elements/spacing": "m",
     "elements/reference": "m22",
     "elements/block": "m2",
     "elements/ends": "tm22",
@@ -64,6 +65,18 @@ _MODEL = {
     "histories/values": "hpq",
     "histories/element_names": "f",
     "histories/element_values": "hf2",
+    "breaks/time": "w",
+    "breaks/stage": "w",
+    "breaks/step": "w",
+    "breaks/mode": "w",
+    "breaks/position": "w2",
+    "breaks/length": "w",
+    "breaks/block_a": "w",
+    "breaks/block_b": "w",
+    "breaks/edge_kind": "w",
+    "breaks/edge_index": "w",
+    "breaks/trace": "w",
+    "breaks/element": "w",
     "steps/time": "k",
     "steps/stage": "k",
     "steps/step": "k",
@@ -76,7 +89,7 @@ _MODEL = {
 }
 _TEXTS = frozenset({"model/block_name", "elements/name", "elements/kind", "histories/element_names"})
 # Rows that a run still writes, which are not complete at the same time.
-_GROWING = frozenset("tcshk")
+_GROWING = frozenset("tcshkw")
 
 
 def check(file: ResultFile) -> None:
@@ -114,10 +127,18 @@ def _check_places(file: ResultFile, sizes: dict[str, tuple[int, str]]) -> None:
         last = file.shape("model/excavation")[0]
         if places.shape != (blocks + 1,) or places[0] != 0 or places[-1] != last or not _ascends(places):
             raise _damaged(file, f"model/block_excavations does not ascend from 0 to {last}")
+    if file.has("breaks/mode") and "w" in sizes:
+        for name, least, count in (("mode", 0, 2), ("edge_kind", 0, 5), ("element", -1, sizes.get("m", (0, ""))[0])):
+            if not _are_places(file.read(f"breaks/{name}"), least, count):
+                raise _damaged(file, f"breaks/{name} has numbers that name nothing")
     if file.has("contacts/end") and "c" in sizes:
         ends = file.read("contacts/end")
         if len(ends) and (not _ascends(ends) or ends[0] < 0 or ends[-1] > sizes["c"][0]):
             raise _damaged(file, "contacts/end does not ascend to the number of contacts")
+
+
+def _are_places(numbers: np.ndarray, least: int, count: int) -> bool:
+    return bool(((numbers >= least) & (numbers < count)).all())
 
 
 def _ascends(places: np.ndarray) -> bool:

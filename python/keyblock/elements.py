@@ -31,13 +31,23 @@ class Elements:
 
     @cached_property
     def kinds(self) -> list[str]:
-        """(n,), as "spring" and "support"."""
+        """(n,), as "spring", "bolt", "dowel" and "support"."""
         return self._file.texts("elements/kind") if len(self) else []
 
     @cached_property
     def limit(self) -> np.ndarray:
         """(n,), N/m, the largest force that each can carry; infinite where there is no limit."""
         return self._file.read("elements/limit") if len(self) else np.zeros(0)
+
+    @cached_property
+    def spacing(self) -> np.ndarray:
+        """(n,), m out of plane, of which a section has one; infinite of what goes on through the section, and in results of earlier versions."""
+        return self._file.read("elements/spacing") if self._file.has("elements/spacing") else np.full(len(self), np.inf)
+
+    @property
+    def force_of_one(self) -> np.ndarray:
+        """(n,), N, of one bolt; NaN of what goes on through the section."""
+        return np.where(np.isfinite(self.spacing), self.force * np.where(np.isfinite(self.spacing), self.spacing, 0.0), np.nan)
 
     @cached_property
     def local(self) -> np.ndarray:
@@ -93,7 +103,7 @@ class Elements:
         """A row for each, as pandas.DataFrame. Throws MissingPackageError without pandas."""
         columns: dict[str, Any] = {
             "name": self.names, "kind": self.kinds, "present": self.present, "force": self.force, "elongation": self.elongation,
-            "yielded": self.yielded, "limit": self.limit, "utilization": self.utilization,
+            "yielded": self.yielded, "limit": self.limit, "utilization": self.utilization, "spacing": self.spacing,
         }  # fmt: skip
         rows = [dict(zip(columns, row)) for row in zip(*columns.values())]
         return tables.data_frame(rows, "elements", list(columns))

@@ -123,6 +123,14 @@ class Result:
             raise DamagedError(f"{self.path} is damaged: joints/edge_kind has more than joint sets and trace maps")
         return tables.joints(self._file, self.blocks.edge_names(kinds, numbers))
 
+    @cached_property
+    def breaks(self) -> Any:
+        """Events of breaking over time: bonds of joints, what slip and opening take from joints that weaken, and elements that rupture.
+
+        Columns `name` (set, map, outline or element), `mode` ("tension", "shear"), `stage`, `step`, `x` and `y`, m, `length`, m of joint, `block_a`,
+        `block_b`, `trace` and `element` (−1: none). No rows where nothing broke or could break."""
+        return tables.breaks(self._file, self.blocks, self.blocks.origin)
+
     @property
     def elements(self) -> Any:
         """Springs, supports and other elements: what each carries at the end and carried at the most. None without. At a moment: `frames[3].elements`."""

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _optional
 from ._hdf5 import ResultFile
 
+if TYPE_CHECKING:
+    from .blocks import Blocks
+
 HISTORY_COLUMNS = ["ux", "uy", "vx", "vy", "sxx", "syy", "sxy"]  # of results that do not name them
 ELEMENT_COLUMNS = ["force", "elongation"]
+BREAK_MODES = ("tension", "shear")
 RELEASE_COLUMNS = ["stage", "step", "excavation", "released", "crown", "springline", "mean"]
 
 
@@ -71,6 +75,27 @@ def joints(file: ResultFile, names: Sequence[str]) -> Any:
     frame = pandas.DataFrame(columns)
     frame.attrs["units"] = {name: file.unit(f"joints/{name}") for name in numbers}
     return frame
+
+
+def breaks(file: ResultFile, blocks: Blocks, origin: np.ndarray) -> Any:
+    """A row for each event of breaking; places are those of the scenario."""
+    time = file.complete_times("breaks") if file.has("breaks/time") else np.zeros(0)
+
+    def read(name: str) -> np.ndarray:
+        return file.read(f"breaks/{name}", slice(0, len(time))) if len(time) else np.zeros(0, dtype=int)
+
+    element, mode = read("element"), read("mode")
+    names: list[str] = blocks.edge_names(read("edge_kind"), read("edge_index"))
+    if (element >= 0).any():
+        known = file.texts("elements/name")
+        names = [known[e] if e >= 0 else name for e, name in zip(element, names)]
+    position = origin + (read("position") if len(time) else np.zeros((0, 2)))
+    columns = {
+        "name": np.array(names, dtype=object), "mode": np.array([BREAK_MODES[m] for m in mode], dtype=object),
+        "stage": read("stage"), "step": read("step"), "x": position[:, 0], "y": position[:, 1], "length": read("length").astype(float),
+        "block_a": read("block_a"), "block_b": read("block_b"), "trace": read("trace"), "element": element,
+    }  # fmt: skip
+    return table(columns, time, {"x": "m", "y": "m", "length": "m"})
 
 
 def energy(file: ResultFile) -> Any:

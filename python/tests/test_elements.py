@@ -27,7 +27,7 @@ def test_each_frame_has_what_they_carry(anchors):
     assert last.present.all() and not last.yielded.any()
     np.testing.assert_allclose(last.ends[0, 0], [0.5, 3.0], atol=1e-9)
     assert last.utilization[0] == pytest.approx(1.1 * WEIGHT / 1e5, rel=1e-3) and np.isnan(last.utilization[1])
-    assert last.limit[0] == 1e5 and np.isinf(last.limit[1])
+    assert last.limit[0] == 1e5 and np.isinf(last.limit[1]) and np.isinf(last.spacing).all() and np.isnan(last.force_of_one).all()
     before = anchors.frames[0].elements
     assert before.present.tolist() == [True, False]
     assert last.index_of("second") == 1
@@ -35,6 +35,27 @@ def test_each_frame_has_what_they_carry(anchors):
         last.index_of("secnd")
     # The end of the run is what the summary says.
     assert anchors.summary["elements"][1]["force_n_m"] == pytest.approx(last.force[1])
+
+
+def test_bolts_have_the_force_of_one(tmp_path):
+    """A block of 2 x 1 m hangs on bolts of which there is one every 1.5 m."""
+    scenario = keyblock.Scenario()
+    scenario.rock.update(density=2600.0, young=1e10, poisson=0.2)
+    scenario.joints.friction = 30.0
+    scenario.block.append(name="roof", outer=[[0, 1], [2, 1], [2, 3], [0, 3]], fixed=True)
+    scenario.block.append(name="hung", outer=[[0, 0], [2, 0], [2, 1], [0, 1]])
+    bar = {"diameter": 0.025, "spacing": 1.5, "yield": 4e5, "grout_stiffness": 8e9, "grout_strength": 4e5}
+    scenario.bolt.append({"name": "b", "from": [1, 0], "to": [1, 2.5], **bar})
+    scenario.time.step = 0.002
+    scenario.stage.append(name="hangs", kind="settle")
+    scenario.run(tmp_path / "out")
+    with keyblock.open(tmp_path / "out") as run:
+        bolts = run.frames[-1].elements
+        assert (bolts.names, bolts.kinds, bolts.spacing.tolist()) == (["b"], ["bolt"], [1.5])
+        np.testing.assert_allclose(bolts.force, 2 * WEIGHT, rtol=1e-3)
+        np.testing.assert_allclose(bolts.force_of_one, 3 * WEIGHT, rtol=1e-3)
+        assert run.summary["elements"][0]["force_n"] == pytest.approx(bolts.force_of_one[0])
+        assert run.summary["stages"][0]["damage"]["ruptured_elements"] == 0
 
 
 def test_a_table_has_a_row_for_each(anchors):

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,9 @@
 #include "geometry/vec2.h"
 
 namespace keyblock::contact {
+
+/// By what a joint breaks.
+enum class BreakMode : std::uint8_t { none = 0, tension = 1, shear = 2 };
 
 /// Direction of an edge from its outward normal.
 inline Vec2 tangent_of(Vec2 normal) {
@@ -37,8 +41,10 @@ struct Contact {
   double cohesion = 0.0, tension = 0.0;  ///< N per thickness, of a bond
   StrengthLoss loss;                     ///< of its joint, by slip from the start of the step on
   bool fused = false;
-  bool is_ductile = false;   ///< a bond that holds on when it slips
-  bool at_corner = false;    ///< it stands for two corners that meet
+  bool is_ductile = false;  ///< a bond that holds on when it slips
+  bool at_corner = false;   ///< it stands for two corners that meet
+  /// By what its bond broke in the step, or what it loses by slip or opening was lost.
+  BreakMode broke = BreakMode::none;
   bool was_in_face = false;  ///< Memory::in_face of the last step
   Memory memory;             ///< at the start of the step; no bond any more where the bond breaks in the step
 

@@ -172,6 +172,7 @@ bool ContactDescription::describe(const Surface& surface, const Corners& corners
     contact.memory.state = memory.state;
     contact.memory.bonded = memory.bonded;
     contact.memory.is_torn = memory.is_torn;
+    contact.broke = BreakMode::none;
     contact.memory.in_face = contact.was_in_face = memory.in_face;
     if (memory.bonded) law.length[i] = bond_length(surface, contact, memory);
     if (has_memory_) find_piece(surface, candidates, found[i], contact);

@@ -46,6 +46,7 @@ struct Element {
   double limit = 0.0;     ///< N per thickness, the largest force; infinite: none
   ElementEnd from, to;
   double spacing = 0.0;  ///< m out of plane, of which a section has one; 0: it goes on through the section
+  bool may_rupture = false;
 };
 
 /// What an element carries.

@@ -243,7 +243,8 @@ std::vector<Element> PointSprings::elements() const {
                    .limit = spring.yield,
                    .from = {spring.from, end(k, 0).block},
                    .to = {spring.to, end(k, 1).block},
-                   .spacing = spring.spacing});
+                   .spacing = spring.spacing,
+                   .may_rupture = std::isfinite(spring.rupture)});
   }
   return all;
 }

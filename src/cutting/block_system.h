@@ -19,6 +19,11 @@ enum class EdgeKind : std::uint8_t {
   domain,      ///< the edge of the domain (where the frame is); index 0
 };
 
+/// The last of the kinds.
+constexpr EdgeKind last_of(EdgeKind /*any*/) {
+  return EdgeKind::domain;
+}
+
 /// The set, map or outline, and which trace of it. Labels are equal that are of the same set, map or outline: the trace has no say in the geometry.
 struct EdgeLabel {
   EdgeKind kind = EdgeKind::free;

@@ -302,6 +302,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   } else {
     history_.forget();
   }
+  find_breaks(solved, report.breaks);
   const double loads_before = work_of_loads(model_, drive.end_time, state.position);
   move_blocks(solved, rotation_.spin(), rules_, state);
   // Where blocks turn, loads go other ways than the step was solved with: what they do over the difference is input, and lost at once.

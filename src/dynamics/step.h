@@ -17,6 +17,7 @@
 #include "dynamics/predicted_motion.h"
 #include "dynamics/rotation_correction.h"
 #include "dynamics/step_accounts.h"
+#include "dynamics/step_breaks.h"
 #include "dynamics/step_rules.h"
 #include "model/model.h"
 #include "model/state.h"
@@ -41,11 +42,12 @@ struct StepReport {
   int halvings = 0;       ///< of the shortest that it was taken in, which need not be equally long
   double shortest = 0.0;  ///< s, length of that one; of a static step, its pseudo time step
   bool converged = true;
-  bool taken = true;              ///< false: a trial, after which everything is where it was
-  double penetration = 0.0;       ///< m, largest depth of a contact
-  double max_displacement = 0.0;  ///< m, of a vertex
-  ContactAudit audit;             ///< over all substeps
-  int closed_contacts = 0;        ///< at the end
+  bool taken = true;               ///< false: a trial, after which everything is where it was
+  double penetration = 0.0;        ///< m, largest depth of a contact
+  double max_displacement = 0.0;   ///< m, of a vertex
+  ContactAudit audit;              ///< over all substeps
+  int closed_contacts = 0;         ///< at the end
+  std::vector<JointBreak> breaks;  ///< of joints, over all substeps
 };
 
 /// How a static step is taken.

@@ -18,6 +18,8 @@ struct ElementDescription {
   double limit = std::numeric_limits<double>::infinity();  ///< N per thickness; infinite: none
   Vec2 from, to;                                           ///< m, local, before the run
   int from_block = -1, to_block = -1;                      ///< −1: of several
+  double spacing =
+      std::numeric_limits<double>::infinity();  ///< m out of plane; infinite: it goes on through the section
 
   friend bool operator==(const ElementDescription&, const ElementDescription&) = default;
 };

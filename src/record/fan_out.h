@@ -17,6 +17,7 @@ class FanOut : public RunObserver {
   void frame(const Frame& r) override { to_all(&RunObserver::frame, r); }
   void contacts(const ContactFrame& r) override { to_all(&RunObserver::contacts, r); }
   void history(const HistoryRow& r) override { to_all(&RunObserver::history, r); }
+  void breaks(const BreakRecord& r) override { to_all(&RunObserver::breaks, r); }
   void step(const StepRow& r) override { to_all(&RunObserver::step, r); }
   void checkpoint() override { to_all(&RunObserver::checkpoint); }
   void progress(const Progress& r) override { to_all(&RunObserver::progress, r); }

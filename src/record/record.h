@@ -13,6 +13,7 @@
 #include "cutting/block_system.h"
 #include "geometry/vec2.h"
 #include "record/boundary.h"
+#include "record/break_records.h"
 #include "record/element_record.h"
 #include "record/joint_records.h"
 #include "record/stage.h"
@@ -75,6 +76,7 @@ struct ModelRecord {
   std::vector<std::string> stage_names;  ///< of the whole plan; a run that is stopped has records of fewer
   std::vector<JointRecord> joints;  ///< of sets, then maps; by trace where these have strengths of their own
   std::vector<DrawnStrength> strengths;  ///< that were drawn, or that maps have
+  bool may_break = false;                ///< there are joints that may break, or elements that may rupture
   std::vector<std::string> joint_set_names, trace_map_names, excavation_names;
   std::vector<std::vector<Vec2>> excavation_outlines;
   std::vector<std::string> history_names;  ///< of those that follow points
@@ -384,6 +386,7 @@ struct RunRecord {
   std::vector<PlaneRecord> planes;      ///< beside the model, from left to right and from below
   std::vector<ElementRecord> elements;  ///< springs and supports, at the end
   std::optional<WaterRecord> water;     ///< at the end, where some acts
+  std::vector<BreakCount> breaks;       ///< in the order in which each was first
   bool interrupted = false;
   Profile profile;  ///< of this run; of the part after resuming, if it was resumed
 };
@@ -404,9 +407,10 @@ struct Progress {
 
 /// What a run had reported by the time of a checkpoint.
 struct Reported {
-  long frames = 0, contacts = 0, histories = 0, steps = 0;  ///< calls of these members of RunObserver
-  int stages = 0;                                           ///< that had ended
-  bool within_stage = false;                                ///< the one after them had begun
+  long frames = 0, contacts = 0, histories = 0, breaks = 0,
+       steps = 0;             ///< calls of these members of RunObserver
+  int stages = 0;             ///< that had ended
+  bool within_stage = false;  ///< the one after them had begun
 };
 
 /// Receives a run as it goes on. Calls come from one thread, in the order of simulated time.
@@ -421,6 +425,8 @@ class RunObserver {
   virtual void frame(const Frame&) {}
   virtual void contacts(const ContactFrame&) {}
   virtual void history(const HistoryRow&) {}
+  /// Something broke in the step before. Only where ModelRecord::may_break.
+  virtual void breaks(const BreakRecord&) {}
   virtual void step(const StepRow&) {}
   /// A checkpoint is about to be written, from which a resumed run goes on: what was reported so far must outlast this one.
   virtual void checkpoint() {}

@@ -1,9 +1,11 @@
 #pragma once
 #include <iterator>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "record/record.h"
+#include "record/row_fields.h"
 
 /// The members of records that are written in several places, once, with their names.
 namespace keyblock::record {
@@ -42,6 +44,17 @@ inline constexpr HistoryField history_fields[] = {
     {"ay", "m/s2", &HistoryRow::Point::ay}};  // results of earlier versions have no ax, ay
 static_assert(sizeof(HistoryRow::Point) == std::size(history_fields) * sizeof(double),
               "a quantity of histories is missing");
+
+/// How the steps went, but for the energies, in the order of every table.
+inline constexpr std::tuple step_fields{
+    RowField{"time", "s", "simulated time", &StepRow::time},
+    RowField{"stage", "1", "stage, from 0", &StepRow::stage},
+    RowField{"step", "1", "step of the run", &StepRow::step},
+    RowField{"iterations", "1", "open-close iterations", &StepRow::iterations},
+    RowField{"step_size", "s", "smallest part of the step; static: pseudo time step", &StepRow::step_size},
+    RowField{"penetration", "m", "largest depth that the contact code sees", &StepRow::penetration},
+    RowField{"max_displacement", "m", "largest of the step", &StepRow::max_displacement},
+    RowField{"closed_contacts", "1", "contacts closed in the end", &StepRow::closed_contacts}};
 
 /// Names of energy_fields.
 inline std::vector<std::string> energy_names() {

@@ -8,6 +8,7 @@
 #include "record/fallen.h"
 #include "report/page_data.h"
 #include "report/page_template.h"
+#include "results/breaks.h"
 #include "results/elements_json.h"
 #include "results/json_parts.h"
 #include "results/stage_json.h"
@@ -90,6 +91,7 @@ ordered_json run_json(const results::RunData& data) {
   json["contact_checks"] = results::contact_checks_json(run.contact_checks, data.model.origin);
   json["errors"] = record::computation_errors(run);
   json["elements"] = results::elements_json(run.elements, data.model.origin);
+  json["breaks"] = results::breaks_json(run.breaks, &data.model);
   json["stages"] = stages;
   json["cut_off"] = data.cut_off;
   return json;

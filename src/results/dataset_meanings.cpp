@@ -1,4 +1,6 @@
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "core/checked_json.h"
@@ -27,6 +29,17 @@ struct Dimensions {
   Names scales;
 };
 
+/// Columns of a table that is described by its fields, along the time of its rows.
+template <class Fields>
+void add_rows(const char* time, const Fields& fields, std::vector<Dimensions>& all) {
+  const std::string group(time, std::string_view(time).rfind('/') + 1);
+  record::visit_fields(fields, [&]<class Row, class T>(const record::RowField<Row, T>& field) {
+    if (group + field.name == time) return;
+    all.push_back({group + field.name, {time}});
+    if constexpr (std::is_same_v<T, Vec2>) all.back().scales.emplace_back("component");
+  });
+}
+
 std::vector<Dimensions> dimensions(const record::ModelRecord& model) {
   const char *const frame = "frames/time", *const snapshot = "contacts/time",
                     *const contact = "contacts/contact", *const row = "histories/time",
@@ -51,9 +64,8 @@ std::vector<Dimensions> dimensions(const record::ModelRecord& model) {
   for (const char* name : {"contacts/stage", "contacts/step", "contacts/end"})
     all.push_back({name, {snapshot}});
   all.push_back({"histories/step", {row}});
-  for (const char* name : {"steps/stage", "steps/step", "steps/iterations", "steps/closed_contacts",
-                           "steps/step_size", "steps/penetration", "steps/max_displacement"})
-    all.push_back({name, {step}});
+  add_rows(step, record::step_fields, all);
+  if (model.may_break) add_rows("breaks/time", record::break_fields, all);
   for (const char* name : {"contacts/block_a", "contacts/block_b", "contacts/state", "contacts/edge_kind",
                            "contacts/edge_index"})
     all.push_back({name, {contact}});
@@ -70,7 +82,7 @@ std::vector<Dimensions> dimensions(const record::ModelRecord& model) {
       all.push_back({"joints/" + std::string(field.name), {"joint"}});
   }
   if (!model.elements.empty()) {
-    for (const char* name : {"elements/name", "elements/kind", "elements/limit"})
+    for (const char* name : {"elements/name", "elements/kind", "elements/limit", "elements/spacing"})
       all.push_back({name, {"element"}});
     all.push_back({"elements/reference", {"element", "end", "component"}});
     all.push_back({"elements/block", {"element", "end"}});
@@ -189,20 +201,36 @@ std::vector<Meaning> of_rows() {
        "of every chosen point: displacement, velocity, stress, and acceleration as its mean over the last "
        "step",
        record::history_quantities()},
-      {"steps/time", "s", "simulated time"},
-      {"steps/stage", "1", "stage, from 0"},
-      {"steps/step", "1", "step of the run"},
-      {"steps/iterations", "1", "open-close iterations"},
-      {"steps/closed_contacts", "1", "contacts closed in the end"},
-      {"steps/step_size", "s", "smallest part of the step; static: pseudo time step"},
-      {"steps/penetration", "m", "largest depth that the contact code sees"},
-      {"steps/max_displacement", "m", "largest of the step"},
       {"steps/energy", units_of(record::energy_fields), "terms of the energy balance per metre of thickness",
        record::energy_names()},
       {"steps/energy_names", "", "names of the columns of energy"},
       {"stages", "", "a JSON object per line, bytes"},
       {"run", "", "a line of JSON at the end of the run, bytes"},
       {"summary", "", "the text of summary.json, bytes"}};
+}
+
+Names names_of(cutting::EdgeKind /*any*/) {
+  return names_up_to(cutting::EdgeKind::domain, edge_kind_name);
+}
+Names names_of(record::BreakMode /*any*/) {
+  return names_up_to(record::BreakMode::shear, record::name_of);
+}
+
+/// The columns of a table that is described by its fields.
+template <class Fields>
+std::vector<Meaning> of_table(const char* group, const Fields& fields) {
+  std::vector<Meaning> all;
+  record::visit_fields(fields, [&]<class Row, class T>(const record::RowField<Row, T>& field) {
+    Meaning& meaning =
+        all.emplace_back(Meaning{std::string(group) + "/" + field.name, field.unit, field.meaning});
+    if constexpr (std::is_same_v<T, Vec2>) meaning.columns = {"x", "y"};
+    if constexpr (std::is_enum_v<T>) meaning.values = names_of(T());
+  });
+  return all;
+}
+
+std::vector<Meaning> of_breaks(const record::ModelRecord& model) {
+  return model.may_break ? of_table("breaks", record::break_fields) : std::vector<Meaning>();
 }
 
 std::vector<Meaning> of_joints(const record::ModelRecord& model) {
@@ -223,18 +251,21 @@ std::vector<Meaning> of_joints(const record::ModelRecord& model) {
 
 std::vector<Meaning> of_elements(const record::ModelRecord& model) {
   if (model.elements.empty()) return {};
-  std::vector<Meaning> all{{"element", "1", "number of the element"},
-                           {"end", "", "of elements"},
-                           {"elements/name", "", "names, as in summary.json"},
-                           {"elements/kind", "", "what each is: spring, support, boundary, pressure, water"},
-                           {"elements/limit", "N/m", "largest force that it can carry; infinite: none"},
-                           {"elements/reference",
-                            "m",
-                            "ends before the run, or those of the stretch that it supports",
-                            {"x", "y"}},
-                           {"elements/block", "1", "blocks of the ends, -1: of several", {"from", "to"}},
-                           {"elements/ends", "m", "ends in each frame", {"x", "y"}},
-                           {"elements/present", "1", "whether it is there", {}, {"not there", "there"}}};
+  std::vector<Meaning> all{
+      {"element", "1", "number of the element"},
+      {"end", "", "of elements"},
+      {"elements/name", "", "names, as in summary.json"},
+      {"elements/kind", "", "what each is: spring, bolt, dowel, support, boundary, pressure, water"},
+      {"elements/limit", "N/m", "largest force that it can carry; infinite: none"},
+      {"elements/spacing", "m",
+       "out of plane, of which the section has one; infinite: it goes on through the section"},
+      {"elements/reference",
+       "m",
+       "ends before the run, or those of the stretch that it supports",
+       {"x", "y"}},
+      {"elements/block", "1", "blocks of the ends, -1: of several", {"from", "to"}},
+      {"elements/ends", "m", "ends in each frame", {"x", "y"}},
+      {"elements/present", "1", "whether it is there", {}, {"not there", "there"}}};
   for (const auto& field : record::element_state_fields)
     all.push_back({"elements/" + std::string(field.name), field.unit, field.meaning});
   return all;
@@ -253,8 +284,9 @@ std::vector<Meaning> of_element_histories(const record::ModelRecord& model) {
 
 std::vector<Meaning> all_meanings(const record::ModelRecord& model) {
   std::vector<Meaning> all;
-  for (auto& meanings : {of_the_model(), of_frames(), of_contacts(), of_rows(), of_joints(model),
-                         of_elements(model), of_element_histories(model)})
+  for (auto& meanings :
+       {of_the_model(), of_frames(), of_contacts(), of_rows(), of_table("steps", record::step_fields),
+        of_breaks(model), of_joints(model), of_elements(model), of_element_histories(model)})
     all.insert(all.end(), meanings.begin(), meanings.end());
   return all;
 }
@@ -278,7 +310,9 @@ void describe_datasets(hid_t file, const record::ModelRecord& model) {
     if (!meaning.columns.empty()) hdf5::write_attribute(dataset, "columns", meaning.columns);
     if (!meaning.values.empty()) hdf5::write_attribute(dataset, "values", meaning.values);
   }
-  for (const char* group : {"frames", "contacts", "histories", "steps"})
+  std::vector<const char*> groups{"frames", "contacts", "histories", "steps"};
+  if (model.may_break) groups.push_back("breaks");
+  for (const char* group : groups)
     hdf5::make_scale(hdf5::open_dataset(file, std::string(group) + "/time"), "time");
   hdf5::make_scale(hdf5::open_dataset(file, "contacts/contact"), "contact");
   for (const Dimensions& of : dimensions(model))

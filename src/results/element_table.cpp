@@ -34,12 +34,13 @@ void write_element_catalogue(hid_t file, const record::ModelRecord& model) {
   const std::size_t count = model.elements.size();
   if (count == 0) return;
   std::vector<std::string> name, kind;
-  std::vector<double> limit, reference;
+  std::vector<double> limit, spacing, reference;
   std::vector<std::int32_t> block;
   for (const ElementDescription& e : model.elements) {
     name.push_back(e.name);
     kind.push_back(e.kind);
     limit.push_back(e.limit);
+    spacing.push_back(e.spacing);
     reference.insert(reference.end(), {e.from.x, e.from.y, e.to.x, e.to.y});
     block.insert(block.end(), {e.from_block, e.to_block});
   }
@@ -47,6 +48,7 @@ void write_element_catalogue(hid_t file, const record::ModelRecord& model) {
   hdf5::write_strings(group, "name", name);
   hdf5::write_strings(group, "kind", kind);
   hdf5::write_array<double>(group, "limit", {count}, limit);
+  hdf5::write_array<double>(group, "spacing", {count}, spacing);
   hdf5::write_array<double>(group, "reference", {count, 2, 2}, reference);
   hdf5::write_array<std::int32_t>(group, "block", {count, 2}, block);
 }
@@ -60,6 +62,11 @@ void read_element_catalogue(hid_t file, record::ModelRecord& model) {
   const auto block = read_of_elements<std::int32_t>(group, "block", 2);
   if (limit.rows() != count || reference.rows() != count || block.rows() != count)
     throw RunError("elements/limit, reference and block do not fit the names of the elements");
+  if (H5Lexists(group, "spacing", H5P_DEFAULT) > 0) {  // files of earlier versions do not have it
+    const auto spacing = read_of_elements<double>(group, "spacing", 1);
+    if (spacing.rows() != count) throw RunError("elements/spacing does not fit the names of the elements");
+    for (std::size_t k = 0; k < count; ++k) model.elements[k].spacing = spacing.values[k];
+  }
   const auto blocks = static_cast<std::int32_t>(model.blocks.size());
   for (std::size_t k = 0; k < count; ++k) {
     ElementDescription& e = model.elements[k];
@@ -71,8 +78,8 @@ void read_element_catalogue(hid_t file, record::ModelRecord& model) {
     e.to_block = block.values[2 * k + 1];
     if (e.from_block < -1 || e.from_block >= blocks || e.to_block < -1 || e.to_block >= blocks)
       throw RunError("elements/block names blocks that the model does not have");
-    if (!(e.limit > 0.0) || !std::isfinite(e.from.x + e.from.y + e.to.x + e.to.y))
-      throw RunError("elements/limit or reference holds a number that cannot be");
+    if (!(e.limit > 0.0) || !(e.spacing > 0.0) || !std::isfinite(e.from.x + e.from.y + e.to.x + e.to.y))
+      throw RunError("elements/limit, spacing or reference holds a number that cannot be");
   }
 }
 

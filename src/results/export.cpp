@@ -12,6 +12,7 @@
 #include "record/contact_fields.h"
 #include "record/record_fields.h"
 #include "results/block_shape.h"
+#include "results/breaks.h"
 #include "results/csv.h"
 #include "results/elements_json.h"
 #include "results/export_folder.h"
@@ -78,13 +79,19 @@ std::string contact_table(const RunData& data) {
 }
 
 std::string step_table(const RunData& data) {
-  std::string text = "time,stage,step,iterations,step_size,penetration,max_displacement,closed_contacts";
+  std::string text;
+  record::visit_fields(record::step_fields, [&](const auto& field) {
+    text += fmt::format("{}{}", text.empty() ? "" : ",", field.name);
+  });
   for (const record::EnergyField& field : record::energy_fields) text += fmt::format(",{}", field.name);
   text += "\n";
   auto out = std::back_inserter(text);
   for (const record::StepRow& r : data.steps) {
-    fmt::format_to(out, "{},{},{},{},{},{},{},{}", r.time, r.stage, r.step, r.iterations, r.step_size,
-                   r.penetration, r.max_displacement, r.closed_contacts);
+    const char* comma = "";
+    record::visit_fields(record::step_fields, [&](const auto& field) {
+      fmt::format_to(out, "{}{}", comma, r.*field.member);
+      comma = ",";
+    });
     for (const record::EnergyField& field : record::energy_fields)
       fmt::format_to(out, ",{}", r.energy.*field.number);
     text += "\n";
@@ -180,6 +187,8 @@ std::vector<std::filesystem::path> export_csv(const RunData& data, FileSet& out)
     files.push_back(out.write("joints.csv", joints));
   if (has_histories(data.model))
     files.push_back(out.write("histories.csv", histories_csv(data.model, data.histories)));
+  if (const std::string breaks = break_table(data); !breaks.empty())
+    files.push_back(out.write("breaks.csv", breaks));
   if (const std::string elements = element_table(data.run.elements, data.model.origin); !elements.empty())
     files.push_back(out.write("elements.csv", elements));
   if (const std::string states = element_state_table(data); !states.empty())

@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "results/breaks.h"
 #include "results/export.h"
 #include "results/vtk_parts.h"
 
@@ -101,6 +102,7 @@ std::vector<std::filesystem::path> export_vtk(const RunData& data, FileSet& out)
       [&](const ContactFrame& frame) { return vtk_contact_forces(data.model, frame); });
   if (!data.model.elements.empty())
     add(data.frames, "elements", "vtp", [&](const Frame& frame) { return vtk_elements(data.model, frame); });
+  if (!data.breaks.empty()) first.push_back(out.write("breaks.vtp", vtk_breaks(data)));
   first.push_back(out.write("view.py", vtk_view(data)));
   first.insert(first.end(), others.begin(), others.end());
   return first;

@@ -273,6 +273,7 @@ record::ModelRecord read_model(hid_t file) {
   }
   check_places(model);
   read_joints(file, model);
+  model.may_break = H5Lexists(file, "breaks", H5P_DEFAULT) > 0;
   read_element_catalogue(file, model);
   return model;
 }

@@ -8,6 +8,7 @@
 #include "cutting/cut_fields.h"
 #include "record/run_fields.h"
 #include "record/strengths_json.h"
+#include "results/breaks.h"
 #include "results/elements_json.h"
 #include "results/field_json.h"
 #include "results/joint_table.h"
@@ -136,6 +137,7 @@ std::string run_json(const record::RunRecord& run) {
   json["made_share"] = run.made.share();
   json["planes"] = planes_json(run.planes, {});
   json["elements"] = elements_json(run.elements, {});
+  json["breaks"] = breaks_json(run.breaks);
   json["water"] = run.water ? water_json(*run.water) : ordered_json();
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -154,6 +156,7 @@ record::RunRecord read_run_json(const std::string& text) {
     }
     if (json.contains("planes")) run.planes = read_planes(json.at("planes"));
     if (json.contains("elements")) run.elements = read_elements(json.at("elements"));
+    if (json.contains("breaks")) run.breaks = read_breaks(json.at("breaks"));
     if (json.contains("water") && !json.at("water").is_null()) run.water = read_water(json.at("water"));
     return run;
   });

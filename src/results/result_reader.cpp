@@ -181,6 +181,7 @@ void read_run_record(hid_t file, RunData& data) {
     data.run.dof = unknowns(data);
     data.run.energy.residual_ratio = std::nan("");
     if (!data.steps.empty()) data.run.energy = data.steps.back().energy;
+    for (const record::BreakRecord& row : data.breaks) record::count_break(row, data.run.breaks);
     data.run.wall_time = data.run.max_overlap.depth = data.run.max_area_change = std::nan("");
     data.run.open_close.mean_iterations = std::nan("");
   }
@@ -196,6 +197,7 @@ void check_rows(const RunData& data) {
   const std::size_t blocks = data.model.blocks.size();
   check_places(data.frames, "frames");
   check_places(data.contacts, "contacts");
+  check_places(data.breaks, "breaks");
   check_places(data.steps, "steps");
   for (const record::HistoryRow& row : data.histories) check_steps(row.step, "histories");
   for (const record::Frame& frame : data.frames) {
@@ -208,6 +210,12 @@ void check_rows(const RunData& data) {
       if (!known(contact.block_a) || !known(contact.block_b))
         throw RunError("contacts/block_a or block_b is out of range");
     }
+  }
+  const auto is_end = [&](int block) { return block == -1 || known(block); };
+  for (const record::BreakRecord& row : data.breaks) {
+    if (!is_end(row.block_a) || !is_end(row.block_b) || row.element < -1 ||
+        row.element >= static_cast<std::int32_t>(data.model.elements.size()))
+      throw RunError("breaks name blocks or elements that the model does not have");
   }
   for (const record::HistoryRow& row : data.histories) {
     if (row.points.size() != data.model.history_names.size())
@@ -241,6 +249,7 @@ RunData read_run(const std::filesystem::path& directory) {
     data.frames = FrameTable::read(file, data.model);
     data.contacts = ContactTable::read(file);
     data.histories = HistoryTable::read(file);
+    data.breaks = BreakTable::read(file);
     data.steps = StepTable::read(file);
     check_rows(data);
     read_run_record(file, data);

@@ -115,71 +115,54 @@ std::vector<record::Frame> FrameTable::read(hid_t file, const record::ModelRecor
 }
 
 StepTable::StepTable(hid_t file)
-    : group_(hdf5::create_group(file, "steps")),
-      stage_(group_, "stage", {}),
-      iterations_(group_, "iterations", {}),
-      closed_contacts_(group_, "closed_contacts", {}),
-      step_(group_, "step", {}),
-      step_size_(group_, "step_size", {}),
-      penetration_(group_, "penetration", {}),
-      max_displacement_(group_, "max_displacement", {}),
-      energy_(group_, "energy", {energy_terms}),
-      time_(group_, "time", {}) {
-  hdf5::write_strings(group_, "energy_names", record::energy_names());
+    : rows_(file, "steps", record::step_fields), energy_(rows_.group(), "energy", {energy_terms}) {
+  hdf5::write_strings(rows_.group(), "energy_names", record::energy_names());
 }
 
 void StepTable::append(const record::StepRow& row) {
   std::array<double, energy_terms> energy{};
   for (std::size_t k = 0; k < energy_terms; ++k) energy[k] = row.energy.*record::energy_fields[k].number;
-  stage_.append(row.stage);
-  iterations_.append(row.iterations);
-  closed_contacts_.append(row.closed_contacts);
-  step_.append(row.step);
-  step_size_.append(row.step_size);
-  penetration_.append(row.penetration);
-  max_displacement_.append(row.max_displacement);
   energy_.append(energy);
-  time_.append(row.time);
+  rows_.append(row);
 }
 
 void StepTable::flush() {
-  for (auto* column : {&stage_, &iterations_, &closed_contacts_}) column->flush();
-  step_.flush();
-  for (auto* column : {&step_size_, &penetration_, &max_displacement_, &energy_}) column->flush();
-  time_.flush();
+  energy_.flush();
+  rows_.flush();
 }
 
 std::vector<record::StepRow> StepTable::read(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "steps");
-  const auto time = read_column<double>(group, "time");
-  const auto stage = read_column<std::int32_t>(group, "stage"),
-             iterations = read_column<std::int32_t>(group, "iterations");
-  const auto closed_contacts = read_column<std::int32_t>(group, "closed_contacts");
-  const auto step = read_column<std::int64_t>(group, "step");
-  const auto step_size = read_column<double>(group, "step_size"),
-             penetration = read_column<double>(group, "penetration");
-  const auto max_displacement = read_column<double>(group, "max_displacement");
+  std::vector<record::StepRow> rows =
+      TableOf<decltype(record::step_fields)>::read(group, record::step_fields);
   const auto energy = read_array<double>(group, "energy");
   const std::size_t terms = energy.width();
   require(terms >= first_energy_terms && terms <= energy_terms, "steps/energy");
-  std::vector<record::StepRow> rows(
-      common_rows(time, {stage.rows(), iterations.rows(), closed_contacts.rows(), step.rows(),
-                         step_size.rows(), penetration.rows(), max_displacement.rows(), energy.rows()}));
+  rows.resize(std::min(rows.size(), energy.rows()));
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    rows[k] = {time.values[k],
-               step.values[k],
-               stage.values[k],
-               iterations.values[k],
-               step_size.values[k],
-               penetration.values[k],
-               max_displacement.values[k],
-               closed_contacts.values[k],
-               {}};
-    for (std::size_t i = 0; i < terms; ++i) {
+    for (std::size_t i = 0; i < terms; ++i)
       rows[k].energy.*record::energy_fields[i].number = energy.values[terms * k + i];
-    }
   }
   return rows;
+}
+
+BreakTable::BreakTable(hid_t file, const record::ModelRecord& model) {
+  if (model.may_break) rows_.emplace(file, "breaks", record::break_fields);
+}
+
+void BreakTable::append(const record::BreakRecord& row) {
+  if (!rows_) throw std::invalid_argument("a break in a model in which nothing may break");
+  rows_->append(row);
+}
+
+void BreakTable::flush() {
+  if (rows_) rows_->flush();
+}
+
+std::vector<record::BreakRecord> BreakTable::read(hid_t file) {
+  if (H5Lexists(file, "breaks", H5P_DEFAULT) <= 0) return {};
+  const hdf5::Handle group = hdf5::open_group(file, "breaks");
+  return TableOf<decltype(record::break_fields)>::read(group, record::break_fields);
 }
 
 void TextColumn::append(std::string_view text) {

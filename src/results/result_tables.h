@@ -1,11 +1,15 @@
 #pragma once
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "record/break_records.h"
+#include "record/record_fields.h"
 #include "results/element_table.h"
 #include "results/hdf5_file.h"
+#include "results/row_table.h"
 #include "results/run_data.h"
 
 /// The tables of a result file: one struct per group, written row by row and read back whole. In each, `time` is
@@ -85,11 +89,21 @@ class StepTable {
   static std::vector<record::StepRow> read(hid_t file);
 
  private:
-  hdf5::Handle group_;
-  hdf5::Column<std::int32_t> stage_, iterations_, closed_contacts_;
-  hdf5::Column<std::int64_t> step_;
-  hdf5::Column<double> step_size_, penetration_, max_displacement_, energy_;
-  hdf5::Column<double> time_;
+  TableOf<decltype(record::step_fields)> rows_;
+  hdf5::Column<double> energy_;
+};
+
+/// Of runs in which something may break.
+class BreakTable {
+ public:
+  BreakTable(hid_t file, const record::ModelRecord& model);
+  void append(const record::BreakRecord& row);
+  void flush();
+  /// None where the file has no such table.
+  static std::vector<record::BreakRecord> read(hid_t file);
+
+ private:
+  std::optional<TableOf<decltype(record::break_fields)>> rows_;
 };
 
 /// Text that grows by lines.

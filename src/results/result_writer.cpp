@@ -55,6 +55,7 @@ struct ResultWriter::State {
           frames(file, model),
           contacts(file),
           histories(file, model),
+          breaks(file, model),
           steps(file),
           stages(file, "stages"),
           run(file, "run"),
@@ -63,6 +64,7 @@ struct ResultWriter::State {
       stages.flush();
       contacts.flush();
       histories.flush();
+      breaks.flush();
       steps.flush();
       frames.flush();
       run.flush();
@@ -76,6 +78,7 @@ struct ResultWriter::State {
     FrameTable frames;
     ContactTable contacts;
     HistoryTable histories;
+    BreakTable breaks;
     StepTable steps;
     TextColumn stages, run, summary;
   };
@@ -151,6 +154,7 @@ void ResultWriter::State::copy_earlier() {
   copy("frames", data.frames, earlier->frames, to(file->frames));
   copy("rows of contacts", data.contacts, earlier->contacts, to(file->contacts));
   copy("rows of histories", data.histories, earlier->histories, to(file->histories));
+  copy("rows of breaks", data.breaks, earlier->breaks, to(file->breaks));
   copy("rows of steps", data.steps, earlier->steps, to(file->steps));
   copy("stages", data.run.stages, earlier->stages + (earlier->within_stage ? 1 : 0),
        [&](std::size_t k, const record::StageRecord& stage) {
@@ -250,6 +254,11 @@ void ResultWriter::contacts(const record::ContactFrame& frame) {
 void ResultWriter::history(const record::HistoryRow& row) {
   before_event();
   state_->change_file([&] { state_->file->histories.append(row); });
+}
+
+void ResultWriter::breaks(const record::BreakRecord& row) {
+  before_event();
+  state_->change_file([&] { state_->file->breaks.append(row); });
 }
 
 void ResultWriter::step(const record::StepRow& row) {

@@ -38,6 +38,7 @@ class ResultWriter : public record::RunObserver {
   void frame(const record::Frame& frame) override;
   void contacts(const record::ContactFrame& frame) override;
   void history(const record::HistoryRow& row) override;
+  void breaks(const record::BreakRecord& row) override;
   void step(const record::StepRow& row) override;
   void checkpoint() override;
   void stage_end(int index, const record::StageRecord& stage) override;

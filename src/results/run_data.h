@@ -18,6 +18,7 @@ struct RunData {
   std::vector<record::Frame> frames;
   std::vector<record::ContactFrame> contacts;
   std::vector<record::HistoryRow> histories;
+  std::vector<record::BreakRecord> breaks;
   std::vector<record::StepRow> steps;
 };
 

@@ -9,6 +9,7 @@
 #include "record/computation_errors.h"
 #include "record/energy_warnings.h"
 #include "record/strengths_json.h"
+#include "results/breaks.h"
 #include "results/elements_json.h"
 #include "results/json_parts.h"
 #include "results/stage_json.h"
@@ -173,6 +174,7 @@ std::string summary_json(const record::ModelRecord& model, const record::RunReco
                {"errors", record::computation_errors(run)},
                {"boundary", boundary(model, run)},
                {"elements", elements_json(run.elements, model.origin)},
+               {"breaks", breaks_json(run.breaks, &model)},
                {"water", run.water ? water_json(*run.water) : ordered_json()},
                {"joint_strengths", record::strengths_json<ordered_json>(model.strengths)},
                {"damping", damping(model)},

@@ -159,6 +159,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.reported.frames);
   archive(s.reported.contacts);
   archive(s.reported.histories);
+  archive(s.reported.breaks);
   archive(s.reported.steps);
   archive(s.reported.stages);
   archive(s.reported.within_stage);
@@ -170,6 +171,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   transfer_overlap(archive, s.record.contact_checks.unexplained);
   archive(s.record.max_area_change);
   archive(s.record.made);
+  archive(s.record.breaks);
 }
 
 RunState read_state(ArchiveReader& archive, const RunSetup& setup) {

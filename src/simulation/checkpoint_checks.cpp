@@ -220,12 +220,21 @@ bool is_still(const Stillness::Memory& still, const Model& model) {
          (still.places.empty() || still.places.size() == model.surface.position.size());
 }
 
+bool are_breaks(const std::vector<record::BreakCount>& breaks, const RunSetup& setup, const Model& model) {
+  const auto is_stage = [&](int stage) { return is_place(stage, setup.stages.size()); };
+  return std::all_of(breaks.begin(), breaks.end(), [&](const record::BreakCount& b) {
+    return b.kind <= cutting::EdgeKind::domain && b.mode <= record::BreakMode::shear && b.events > 0 &&
+           (b.element == -1 || is_place(b.element, element_count(model))) && is_stage(b.first_stage) &&
+           is_stage(b.last_stage) && all_finite(std::array{b.length, b.first, b.last});
+  });
+}
+
 bool has_counts(const RunState& state) {
   const record::OpenCloseStatistics& s = state.record.open_close;
   const record::Reported& r = state.reported;
   return are_counts({state.stage_step, state.iterations, s.max_iterations, s.retried_steps,
                      s.unconverged_steps, s.last_converged_step, state.record.contact_checks.across_gaps,
-                     r.frames, r.contacts, r.histories, r.steps, r.stages}) &&
+                     r.frames, r.contacts, r.histories, r.breaks, r.steps, r.stages}) &&
          state.stage_step <= state.mechanics.step && s.last_converged_step <= state.mechanics.step &&
          r.stages == state.stage && std::isfinite(state.stage_start) && std::isfinite(state.initial_energy) &&
          std::isfinite(state.wall_time);
@@ -296,6 +305,7 @@ std::string mistake_in_state(const RunState& state, const RunSetup& setup, const
     return "loads on walls that cannot be";
   if (!are_supports(state.mechanics.installed, setup)) return "supports that are not of this run";
   if (!are_peaks(state.peaks, setup, model)) return "forces of elements that are not of this run";
+  if (!are_breaks(state.record.breaks, setup, model)) return "breaks that are not of this run";
   if (!is_damage(state.damage, setup, model)) return "measures of damage that cannot be";
   const bool settles =
       state.stage_step > 0 && setup.stages[at(state.stage)].kind == record::StageKind::settle;

@@ -18,6 +18,11 @@ using dynamics::State;
 
 namespace {
 
+/// m; infinite where the element goes on through the section.
+double spacing_of(const dynamics::Element& element) {
+  return element.spacing > 0.0 ? element.spacing : HUGE_VAL;
+}
+
 /// Calls of(coupling, carried) for each coupling.
 template <typename Of>
 void for_carried(const Model& model, const State& state, const Of& of) {
@@ -57,9 +62,17 @@ std::vector<record::ElementDescription> element_descriptions(const Model& model)
   std::vector<record::ElementDescription> all;
   for (const auto& coupling : model.couplings) {
     for (const dynamics::Element& e : coupling->elements())
-      all.push_back({e.name, e.kind, e.limit, e.from.place, e.to.place, e.from.block, e.to.block});
+      all.push_back(
+          {e.name, e.kind, e.limit, e.from.place, e.to.place, e.from.block, e.to.block, spacing_of(e)});
   }
   return all;
+}
+
+bool may_rupture(const Model& model) {
+  return std::ranges::any_of(model.couplings, [](const auto& coupling) {
+    const std::vector<dynamics::Element> elements = coupling->elements();
+    return std::ranges::any_of(elements, &dynamics::Element::may_rupture);
+  });
 }
 
 std::vector<record::ElementState> element_states(const Model& model, const State& state) {
@@ -94,15 +107,22 @@ int element_of(const Model& model, const History& history) {
                      : "the name of an element: " + names);
 }
 
-void keep_peaks(const Model& model, const State& state, int stage, std::vector<ElementPeak>& peaks) {
+std::vector<int> keep_peaks(const Model& model, const State& state, int stage,
+                            std::vector<ElementPeak>& peaks) {
+  std::vector<int> ruptured;
   std::size_t k = 0;
-  for_carried(model, state, [&](const auto& /*coupling*/, const std::vector<Carried>& carried) {
+  for_carried(model, state, [&](const dynamics::Coupling& coupling, const std::vector<Carried>& carried) {
     if (peaks.size() < k + carried.size()) peaks.resize(k + carried.size());
-    for (const Carried& one : carried) {
-      ElementPeak& peak = peaks[k++];
-      if (std::abs(one.force) > peak.force) peak = {std::abs(one.force), state.time, stage};
+    for (std::size_t i = 0; i < carried.size(); ++i, ++k) {
+      const Carried& one = carried[i];
+      ElementPeak& peak = peaks[k];
+      if (std::abs(one.force) > peak.force) peak = {std::abs(one.force), state.time, stage, peak.ruptured};
+      if (!one.ruptured || peak.ruptured != 0) continue;
+      peak.ruptured = 1;
+      if (coupling.elements()[i].may_rupture) ruptured.push_back(static_cast<int>(k));
     }
   });
+  return ruptured;
 }
 
 std::vector<record::ElementRecord> element_records(const Model& model, const State& state,
@@ -114,7 +134,7 @@ std::vector<record::ElementRecord> element_records(const Model& model, const Sta
     for (std::size_t i = 0; i < elements.size(); ++i) {
       const Carried& now = carried[i];
       const ElementPeak peak = records.size() < peaks.size() ? peaks[records.size()] : ElementPeak{};
-      const double spacing = elements[i].spacing;
+      const double spacing = spacing_of(elements[i]);
       records.push_back(
           {.name = elements[i].name,
            .kind = elements[i].kind,
@@ -128,9 +148,9 @@ std::vector<record::ElementRecord> element_records(const Model& model, const Sta
            .peak_force = peak.force,
            .peak_time = peak.time,
            .limit = elements[i].limit,
-           .spacing = spacing > 0.0 ? spacing : HUGE_VAL,
-           .force_of_one = spacing > 0.0 ? now.force * spacing : HUGE_VAL,
-           .peak_force_of_one = spacing > 0.0 ? peak.force * spacing : HUGE_VAL,
+           .spacing = spacing,
+           .force_of_one = std::isfinite(spacing) ? now.force * spacing : HUGE_VAL,
+           .peak_force_of_one = std::isfinite(spacing) ? peak.force * spacing : HUGE_VAL,
            .ruptured = now.ruptured});
     }
   });

@@ -72,6 +72,13 @@ void put_forces(std::span<const dynamics::ContactForce> forces, std::span<record
   }
 }
 
+bool may_break(const dynamics::Model& model) {
+  const auto joint_may = [](const contact::JointLaw& law) {
+    return !law.fused && (law.may_bond() || law.has_memory());
+  };
+  return std::ranges::any_of(model.laws, joint_may) || may_rupture(model);
+}
+
 double strength_left(const contact::JointLaw& law, const contact::Memory& memory) {
   if (law.has_memory()) return law.share_left(memory.worn);
   return law.may_bond() && !law.fused && !memory.bonded ? 0.0 : 1.0;
@@ -181,12 +188,13 @@ record::ModelRecord Recorder::model() const {
   record.trace_map_names = setup_.trace_map_names;
   record.joints = joint_records(setup_);
   record.strengths = setup_.joints.drawn;
+  record.may_break = may_break(model_);
+  record.elements = element_descriptions(model_);
   for (const Excavation& excavation : setup_.excavations) {
     record.excavation_names.push_back(excavation.name);
     record.excavation_outlines.push_back(excavation.outline);
   }
   record.history_names = point_names_;
-  record.elements = element_descriptions(model_);
   record.element_histories = element_histories_;
   record.opening_width = gauge_.opening_width();
   record.slip_limit = setup_.damage.slip;
@@ -262,6 +270,42 @@ void Recorder::each_contact(const dynamics::Stepper& stepper, const record::Take
   }
 }
 
+cutting::EdgeLabel Recorder::label_of(int edge, int block_a, int block_b) const {
+  return cutting::joint_between(setup_.system, at(block_a), at(block_b)).value_or(labels_[at(edge)]);
+}
+
+std::vector<record::BreakRecord> Recorder::breaks(const dynamics::State& state,
+                                                  std::span<const dynamics::JointBreak> joints,
+                                                  std::span<const int> elements) const {
+  std::vector<record::BreakRecord> rows;
+  const record::BreakRecord now{.time = state.time, .step = state.step};
+  for (const dynamics::JointBreak& joint : joints) {
+    const cutting::EdgeLabel label = label_of(joint.edge, joint.block_a, joint.block_b);
+    record::BreakRecord& row = rows.emplace_back(now);
+    row.mode =
+        joint.mode == contact::BreakMode::tension ? record::BreakMode::tension : record::BreakMode::shear;
+    row.position = joint.position;
+    row.length = joint.length;
+    row.block_a = joint.block_a;
+    row.block_b = joint.block_b;
+    row.kind = label.kind;
+    row.index = label.index;
+    row.trace = label.trace;
+  }
+  if (elements.empty()) return rows;
+  const std::vector<record::ElementDescription> descriptions = element_descriptions(model_);
+  const std::vector<record::ElementState> states = element_states(model_, state);
+  for (const int element : elements) {
+    const record::ElementDescription& of = descriptions[at(element)];
+    record::BreakRecord& row = rows.emplace_back(now);
+    row.position = 0.5 * (states[at(element)].from + states[at(element)].to);
+    row.block_a = of.from_block;
+    row.block_b = of.to_block;
+    row.element = element;
+  }
+  return rows;
+}
+
 void Recorder::put_places(std::span<const contact::Contact> contacts,
                           std::span<record::ContactRecord> to) const {
   for (std::size_t k = 0; k < contacts.size(); ++k) {
@@ -274,8 +318,7 @@ void Recorder::put_places(std::span<const contact::Contact> contacts,
     row.position = model_.surface.position[at(c.vertex)];
     row.normal = c.normal;
     row.length = c.length;
-    row.label =
-        cutting::joint_between(setup_.system, at(c.block_a), at(c.block_b)).value_or(labels_[at(c.edge)]);
+    row.label = label_of(c.edge, c.block_a, c.block_b);
   }
 }
 

@@ -25,6 +25,10 @@ class Recorder {
   /// Gives the contacts of the last step in their order, some at a time: so few that they stay in the nearest cache.
   void each_contact(const dynamics::Stepper& stepper, const record::TakeContacts& take,
                     record::ContactParts parts = {}) const;
+  /// What broke in the last step: joints, and elements by their numbers; but for the stage.
+  [[nodiscard]] std::vector<record::BreakRecord> breaks(const dynamics::State& state,
+                                                        std::span<const dynamics::JointBreak> joints,
+                                                        std::span<const int> elements) const;
   /// Velocities of the history points, m/s. frame: how what displacements are relative to has moved (frame_motion()).
   [[nodiscard]] std::vector<Vec2> velocities(const dynamics::State& state,
                                              const dynamics::GroundMove& frame) const;
@@ -41,6 +45,7 @@ class Recorder {
   void orders_changed();
 
  private:
+  [[nodiscard]] cutting::EdgeLabel label_of(int edge, int block_a, int block_b) const;
   void put_water(const dynamics::State& state, std::span<record::ContactRecord> to) const;
   void put_places(std::span<const contact::Contact> contacts, std::span<record::ContactRecord> to) const;
   struct Point {

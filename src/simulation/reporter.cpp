@@ -45,6 +45,18 @@ void Reporter::measure_overlap(RunState& now) {
   now.record.max_area_change = std::max(now.record.max_area_change, recorder_.area_change(now.mechanics));
 }
 
+void Reporter::breaks(RunState& now, std::span<const dynamics::JointBreak> joints,
+                      std::span<const int> elements) {
+  if (joints.empty() && elements.empty()) return;
+  const Profile::Scope scope(profile_, Phase::output);
+  for (record::BreakRecord& row : recorder_.breaks(now.mechanics, joints, elements)) {
+    row.stage = now.stage;
+    observer_.breaks(row);
+    ++now.reported.breaks;
+    record::count_break(row, now.record.breaks);
+  }
+}
+
 void Reporter::before_step(const RunState& now) {
   if (setup_.histories.empty() || !is_due(now.stage_step + 1, setup_.output.history_interval)) return;
   velocity_before_ = recorder_.velocities(now.mechanics, frame_motion(setup_, now));

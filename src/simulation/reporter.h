@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "core/profile.h"
@@ -40,6 +41,8 @@ class Reporter {
   void frame(RunState& now);
   void contacts(RunState& now, const dynamics::Stepper& stepper);
   void measure_overlap(RunState& now);
+  /// What broke in a step: joints, and elements by their numbers.
+  void breaks(RunState& now, std::span<const dynamics::JointBreak> joints, std::span<const int> elements);
 
   /// Before a dynamic step: keeps what records of the time after it need.
   void before_step(const RunState& now);

@@ -320,10 +320,11 @@ void Runner::after_step(const dynamics::StepReport& report, const StageOutlook& 
   const bool ends_stage = outlook.steps_left == 0;
   count(now_, report);
   keep_audit(report.audit, setup_, now_);
-  keep_peaks(model_, now_.mechanics, now_.stage, now_.peaks);
+  const std::vector<int> ruptured = keep_peaks(model_, now_.mechanics, now_.stage, now_.peaks);
   opening_.drop_moved(gauge_, now_.mechanics);
   check_converging(setup_, now_);
   check_state(setup_, now_);
+  reporter_.breaks(now_, report.breaks, ruptured);
   reporter_.after_step(now_, *stepper_, report, ends_stage);
   if (options_.after_step) options_.after_step(*this, report);
   // The end of a stage has a checkpoint of its own: from one within it, a run that is resumed would have no step left to take.

@@ -180,6 +180,8 @@ export interface Header {
     energy: Record<string, number | null>;
     /** Springs, supports and other elements. Pages of earlier versions do not have them. */
     elements?: ElementAtEnd[];
+    /** What broke of each joint or element. Pages of earlier versions do not have it. */
+    breaks?: BreakCount[];
     stages: Stage[];
     interrupted: boolean;
     /** There is no record of the end: the run was killed, or still goes on. */
@@ -193,6 +195,21 @@ export interface Header {
   /** The smallest number of steps from one row of a stage to the next; 0 where there are none. */
   steps_between_rows: number;
   arrays: ArrayEntry[];
+}
+
+export interface BreakCount {
+  /** Empty where the joint has no name. */
+  name: string;
+  mode: "tension" | "shear";
+  edge_kind: string;
+  /** −1: a joint. */
+  element: number;
+  events: number;
+  length_m: number;
+  first_s: number;
+  first_stage: number;
+  last_s: number;
+  last_stage: number;
 }
 
 export interface ElementInModel {

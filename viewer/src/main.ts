@@ -14,7 +14,7 @@ import { releasePlots } from "./release_plots";
 import { damagePlots, historyPlots, motionPlots, solverPlots } from "./run_plots";
 import { resultSection } from "./result";
 import { Run } from "./run";
-import { cuttingFacts, elementTable, movingTable, programFacts, qualityTable, stageTable } from "./tables";
+import { cuttingFacts, breakTable, elementTable, movingTable, programFacts, qualityTable, stageTable } from "./tables";
 import { start } from "./start";
 
 function head(header: Header): HTMLElement {
@@ -101,6 +101,20 @@ function build(run: Run, main: HTMLElement): void {
           "p",
           { class: "hint" },
           "Springs, supports, sides of the boundary and walls under pressure. Forces are per metre of thickness. Of springs tension is positive; of all else the force is the size of the resultant.",
+        ),
+      ),
+    );
+  const breaks = breakTable(run);
+  if (breaks)
+    parts.push(
+      section(
+        "breaks",
+        "What broke",
+        breaks,
+        h(
+          "p",
+          { class: "hint" },
+          "An event is a contact that loses its bond, or all that slip or opening take from its strength, or an element that ruptures. All events are in result.h5 and breaks.csv.",
         ),
       ),
     );

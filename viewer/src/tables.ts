@@ -134,6 +134,31 @@ export function elementTable(run: Run): HTMLElement | null {
   return tableBox("What each carries, and carried at the most", [head], rows);
 }
 
+/** What broke, and when; null where nothing did. */
+export function breakTable(run: Run): HTMLElement | null {
+  const breaks = run.header.run.breaks ?? [];
+  if (breaks.length === 0) return null;
+  const head = [
+    column("Name", "", true),
+    column("By", "", true),
+    column("Events"),
+    column("Length", "m"),
+    column("First", "", true),
+    column("Last", "", true),
+  ];
+  const moment = (time: number, stage: number) =>
+    `${fixed(time, 3)} s, ${run.header.model.stages[stage] ?? stage}`;
+  const rows = breaks.map((b) => [
+    h("th", { scope: "row" }, b.name || (b.edge_kind === "free" ? "between blocks" : b.edge_kind)),
+    h("td", { class: "text" }, b.mode),
+    h("td", {}, b.events),
+    h("td", {}, b.element < 0 ? significant(b.length_m, 3) : "–"),
+    h("td", { class: "text" }, moment(b.first_s, b.first_stage)),
+    h("td", { class: "text" }, moment(b.last_s, b.last_stage)),
+  ]);
+  return tableBox("What broke in all of the run", [head], rows, "narrow");
+}
+
 /** Blocks left moving by static stages, each with a button that shows it. */
 export function movingTable(run: Run, show: (block: number, stage: number) => void): HTMLElement | null {
   const stages = marginalStages(run).filter(({ stage }) => stage.equilibrium.moving.length > 0);

@@ -79,9 +79,10 @@ TEST(Export, Csv) {
   const auto folder = fresh / "made";
   const RunData data = small_motions();
   const auto files = export_run(data, folder, ExportFormat::csv);
-  EXPECT_THAT(files, testing::ElementsAre(folder / "blocks.csv", folder / "contacts.csv",
-                                          folder / "steps.csv", folder / "histories.csv",
-                                          folder / "element_frames.csv", folder / "release.csv"));
+  EXPECT_THAT(files,
+              testing::ElementsAre(folder / "blocks.csv", folder / "contacts.csv", folder / "steps.csv",
+                                   folder / "histories.csv", folder / "breaks.csv",
+                                   folder / "element_frames.csv", folder / "release.csv"));
   const auto elements = lines(folder / "element_frames.csv");
   EXPECT_EQ(
       elements[0],
@@ -99,6 +100,13 @@ TEST(Export, Csv) {
   EXPECT_EQ(contacts.size(), 1U + 0 + 1 + 2);
   EXPECT_THAT(contacts[1], HasSubstr(",open,"));
   EXPECT_THAT(contacts[1], testing::EndsWith("joint set,J1"));
+  const auto breaks = lines(folder / "breaks.csv");
+  EXPECT_EQ(breaks[0],
+            "time,stage,step,mode,x,y,length,block_a,block_b,edge_kind,edge_index,trace,element,name");
+  EXPECT_EQ(breaks.size(), 1U + 4);
+  EXPECT_THAT(breaks[1], HasSubstr(",0,7,tension,46600"));
+  EXPECT_THAT(breaks[1], testing::EndsWith(",2,1,trace map,0,12,-1,map"));
+  EXPECT_THAT(breaks[3], testing::EndsWith(",0,2,1,free,0,-1,1,boundary.base"));
   EXPECT_EQ(lines(folder / "steps.csv").size(), 31U);
   EXPECT_EQ(lines(folder / "histories.csv").size(), 31U);
   EXPECT_THAT(lines(folder / "release.csv"),
@@ -242,8 +250,9 @@ TEST(Export, VtkSeriesHasTimesThatAscend) {
   EXPECT_EQ(files[3], folder / "centres.pvd");
   EXPECT_EQ(files[4], folder / "forces.pvd");
   EXPECT_EQ(files[5], folder / "elements.pvd");
-  EXPECT_EQ(files[6], folder / "view.py");
-  EXPECT_EQ(files.size(), 7U + 4 * 6 + 2 * 3);
+  EXPECT_EQ(files[6], folder / "breaks.vtp");
+  EXPECT_EQ(files[7], folder / "view.py");
+  EXPECT_EQ(files.size(), 8U + 4 * 6 + 2 * 3);
   for (const std::size_t series : {2U, 3U}) EXPECT_EQ(series_times(files[series]), series_times(files[0]));
   EXPECT_EQ(series_times(files[4]), series_times(files[1]));
   const std::vector<double> times = series_times(files[0]);

@@ -156,7 +156,10 @@ TEST(ResultFile, SurvivesBeingKilled) {
   expected.frames.resize(2);
   expected.contacts.resize(1);
   expected.histories.resize(10);
+  expected.breaks.resize(1);
   expected.steps.resize(10);
+  ASSERT_EQ(data.run.breaks.size(), 1U);
+  EXPECT_EQ(data.run.breaks[0].events, 1);
   expected.run = data.run;
   expected.run.stages = {sample.stage(0)};
   expect_equal(data, expected);

@@ -5,7 +5,11 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 
+#include "record/break_records.h"
 #include "record/damage_fields.h"
 
 namespace keyblock::results {
@@ -62,6 +66,7 @@ void expect_equal(const record::ModelRecord& a, const record::ModelRecord& b) {
   EXPECT_EQ(a.excavation_names, b.excavation_names);
   EXPECT_EQ(a.excavation_outlines, b.excavation_outlines);
   EXPECT_EQ(a.history_names, b.history_names);
+  EXPECT_EQ(a.may_break, b.may_break);
   EXPECT_EQ(a.elements, b.elements);
   EXPECT_EQ(a.element_histories, b.element_histories);
   EXPECT_EQ(a.opening_width, b.opening_width);
@@ -151,6 +156,22 @@ void expect_equal(const record::HistoryRow& a, const record::HistoryRow& b) {
     EXPECT_TRUE(same(a.elements[k].force, b.elements[k].force));
     EXPECT_TRUE(same(a.elements[k].elongation, b.elements[k].elongation));
   }
+}
+
+void expect_equal(const record::BreakRecord& a, const record::BreakRecord& b) {
+  record::visit_fields(record::break_fields, [&]<class Row, class T>(const record::RowField<Row, T>& field) {
+    if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Vec2>)
+      EXPECT_TRUE(same(a.*field.member, b.*field.member)) << field.name;
+    else
+      EXPECT_EQ(a.*field.member, b.*field.member) << field.name;
+  });
+}
+
+void expect_equal(const record::BreakCount& a, const record::BreakCount& b) {
+  EXPECT_EQ(std::tuple(a.kind, a.index, a.element, a.mode, a.events),
+            std::tuple(b.kind, b.index, b.element, b.mode, b.events));
+  EXPECT_TRUE(same(a.length, b.length) && same(a.first, b.first) && same(a.last, b.last));
+  EXPECT_EQ(std::pair(a.first_stage, a.last_stage), std::pair(b.first_stage, b.last_stage));
 }
 
 void expect_equal(const record::StepRow& a, const record::StepRow& b) {
@@ -249,8 +270,9 @@ SampleRun::SampleRun() {
   model.excavation_names = {"tunnel", "niche"};
   model.excavation_outlines = {{{0, 0}, {1, 0}, {0.1, 1}}, {}};
   model.history_names = {"crown", "a/b, \"c\""};
-  model.elements = {{"anchor, \"3\"", "spring", 1e5 / 3.0, {0.1, 0.2}, {5.0, 5.5}, 0, 1},
+  model.elements = {{"anchor, \"3\"", "spring", 1e5 / 3.0, {0.1, 0.2}, {5.0, 5.5}, 0, 1, 1.5},
                     {"boundary.base", "boundary", HUGE_VAL, {0.0, 0.0}, {8.0, 0.0}, -1, 2}};
+  model.may_break = true;
   model.element_histories = {{"load cell", 0}};
   model.opening_width = 5.5;
   model.slip_limit = 0.1 / 3.0;
@@ -322,6 +344,25 @@ record::HistoryRow SampleRun::history(long step) {
   return row;
 }
 
+record::BreakRecord SampleRun::break_at(int stage, long step) {
+  record::BreakRecord row;
+  row.time = static_cast<double>(step) * step_size;
+  row.stage = stage;
+  row.step = step;
+  row.mode = step % 2 == 0 ? record::BreakMode::shear : record::BreakMode::tension;
+  row.position = {noise(step, 1), noise(step, 2)};
+  row.block_a = step % 4 == 0 ? -1 : 2;
+  row.block_b = 1;
+  if (step % 3 == 0) {
+    row.element = 1;
+  } else {
+    row.length = std::abs(noise(step, 3));
+    row.kind = cutting::EdgeKind::trace_map;
+    row.trace = 12;
+  }
+  return row;
+}
+
 record::StepRow SampleRun::step_row(int stage, long step) {
   record::StepRow row{static_cast<double>(step) * step_size,
                       step,
@@ -387,6 +428,8 @@ record::RunRecord SampleRun::run() {
   record.max_area_change = 1e-12;
   record.energy = step_row(1, 30).energy;
   record.stages = {stage(0), stage(1)};
+  for (long step = 7; step <= 30; step += 7)
+    record::count_break(break_at(step <= 10 ? 0 : 1, step), record.breaks);
   return record;
 }
 
@@ -394,7 +437,7 @@ void SampleRun::play(record::RunObserver& observer, long first, long last, bool 
   observer.begin(model);
   if (const long done = first - 1; done > 0) {
     const int stages = done < 10 ? 0 : done < 30 ? 1 : 2;
-    observer.resume({done / 5, done / 10, done, done, stages, done != 10 && done < 30});
+    observer.resume({done / 5, done / 10, done, done / 7, done, stages, done != 10 && done < 30});
   }
   int stage_now = -1;
   for (long step = first; step <= last; ++step) {
@@ -406,6 +449,7 @@ void SampleRun::play(record::RunObserver& observer, long first, long last, bool 
       record.duration = 0.0;
       observer.stage_begin(index, record);
     }
+    if (step % 7 == 0) observer.breaks(break_at(index, step));
     observer.step(step_row(index, step));
     observer.history(history(step));
     if (step % 5 == 0) observer.frame(frame(index, step));
@@ -416,10 +460,11 @@ void SampleRun::play(record::RunObserver& observer, long first, long last, bool 
 }
 
 RunData SampleRun::expected() {
-  RunData data{model, run(), false, {}, {}, {}, {}};
+  RunData data{model, run(), false, {}, {}, {}, {}, {}};
   for (long step = 1; step <= 30; ++step) {
     const int index = step <= 10 ? 0 : 1;
     data.steps.push_back(step_row(index, step));
+    if (step % 7 == 0) data.breaks.push_back(break_at(index, step));
     data.histories.push_back(history(step));
     if (step % 5 == 0) data.frames.push_back(frame(index, step));
     if (step % 10 == 0) data.contacts.push_back(contacts(index, step, static_cast<int>(step / 10) - 1));
@@ -432,6 +477,8 @@ void expect_equal(const RunData& a, const RunData& b) {
   expect_equal_rows(a.frames, b.frames, "frames");
   expect_equal_rows(a.contacts, b.contacts, "contacts");
   expect_equal_rows(a.histories, b.histories, "histories");
+  expect_equal_rows(a.breaks, b.breaks, "breaks");
+  expect_equal_rows(a.run.breaks, b.run.breaks, "counts of breaks");
   expect_equal_rows(a.steps, b.steps, "steps");
   expect_equal_rows(a.run.stages, b.run.stages, "stages");
   EXPECT_EQ(a.run.steps, b.run.steps);

@@ -15,11 +15,12 @@ class SampleRun {
   record::Frame frame(int stage, long step);
   record::ContactFrame contacts(int stage, long step, int count);
   record::HistoryRow history(long step);
+  record::BreakRecord break_at(int stage, long step);
   record::StepRow step_row(int stage, long step);
   record::StageRecord stage(int index);
   record::RunRecord run();
 
-  /// Steps 1 … 10 are stage 0 and 11 … 30 stage 1, from `first` on, to `observer`; a frame every 5, contacts every 10.
+  /// Steps 1 … 10 are stage 0 and 11 … 30 stage 1, from `first` on, to `observer`; a frame every 5, a break every 7, contacts every 10.
   /// Everything depends on the step alone. From a later `first` on, the run is resumed from a checkpoint before it. With
   /// `finish`, the run ends after the last step.
   void play(record::RunObserver& observer, long first = 1, long last = 30, bool finish = true);

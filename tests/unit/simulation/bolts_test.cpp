@@ -184,7 +184,16 @@ TEST(Bolts, HaveTheSameBitsForAnyThreadsAndAfterAnInterruption) {
     for (threads.threads = 2; threads.threads <= 4; threads.threads += 2)
       EXPECT_EQ(run(scene.setup, threads, nobody).state_hash, whole.state_hash) << order;
     Stopper stopper(2100);
-    EXPECT_EQ(resumed_run(scene.setup, stopper).state_hash, whole.state_hash) << order;
+    const record::RunRecord resumed = resumed_run(scene.setup, stopper);
+    EXPECT_EQ(resumed.state_hash, whole.state_hash) << order;
+    // The bar, and not the dowel that goes with it.
+    ASSERT_EQ(whole.breaks.size(), 1u);
+    ASSERT_EQ(resumed.breaks.size(), 1u);
+    EXPECT_EQ(whole.breaks[0].element, 0);
+    EXPECT_EQ(whole.breaks[0].events, 1);
+    EXPECT_LT(whole.breaks[0].first, 2.0);
+    EXPECT_DOUBLE_EQ(resumed.breaks[0].first, whole.breaks[0].first);
+    EXPECT_EQ(resumed.breaks[0].events, 1);
   }
 }
 
