@@ -80,6 +80,51 @@ void run_safety(const SafetyArguments& arguments) {
   run_limit(std::move(limit));
 }
 
+void add_safety_options(CLI::App& command, SafetyArguments& arguments) {
+  study::LimitRequest& request = arguments.limit.request;
+  command
+      .add_option(
+          "--stage", arguments.stage,
+          "Stage at whose end strength is reduced; default: stage of [safety], or the last static one")
+      ->type_name("STAGE");
+  command
+      .add_option("--sets", arguments.sets,
+                  "Joint sets, trace maps, interfaces, or joints, whose strength is reduced, with commas "
+                  "between them; "
+                  "default: all")
+      ->delimiter(',')
+      ->type_name("NAME");
+  command.add_option("--area", arguments.area, "So much rock may move, m2; default: none")->type_name("A");
+  command
+      .add_option("--moved", arguments.moved,
+                  "Rock has moved that went farther than this, m; default: 0.2 % of the block size")
+      ->type_name("X");
+  command.add_flag("--yield", arguments.yield,
+                   "The yield coefficient in the place of the factor: the share of its weight that pushes "
+                   "each block to the side, "
+                   "from the equilibrium on, at which rock moves");
+  command
+      .add_option("--from", arguments.from,
+                  "A factor at which the rock holds; default: 0.5, of the yield coefficient 0")
+      ->type_name("A");
+  command
+      .add_option("--to", arguments.to,
+                  "A factor at which it does not; default: 5, of the yield coefficient 1 to the side to "
+                  "which the ground falls")
+      ->type_name("B");
+  command
+      .add_option("--tolerance", request.tolerance,
+                  "Where the bisection ends: width of the bracket over the larger of its ends")
+      ->capture_default_str()
+      ->type_name("T");
+  command
+      .add_option("--sweep", request.scan,
+                  "Also look at N equal parts of the way: what moves at which factor, and whether the rock "
+                  "holds again")
+      ->check(CLI::Range(1, 1000).description(""))
+      ->type_name("N");
+}
+
 }  // namespace
 
 void add_safety(CLI::App& app) {
@@ -93,47 +138,7 @@ void add_safety(CLI::App& app) {
                                          "an equilibrium on, until rock moves and "
                                          "falls");
   add_scenario_file(*command, arguments->limit.scenario);
-  command
-      ->add_option(
-          "--stage", arguments->stage,
-          "Stage at whose end strength is reduced; default: stage of [safety], or the last static one")
-      ->type_name("STAGE");
-  command
-      ->add_option("--sets", arguments->sets,
-                   "Joint sets, trace maps, interfaces, or joints, whose strength is reduced, with commas "
-                   "between them; "
-                   "default: all")
-      ->delimiter(',')
-      ->type_name("NAME");
-  command->add_option("--area", arguments->area, "So much rock may move, m2; default: none")->type_name("A");
-  command
-      ->add_option("--moved", arguments->moved,
-                   "Rock has moved that went farther than this, m; default: 0.2 % of the block size")
-      ->type_name("X");
-  command->add_flag("--yield", arguments->yield,
-                    "The yield coefficient in the place of the factor: the share of its weight that pushes "
-                    "each block to the side, "
-                    "from the equilibrium on, at which rock moves");
-  command
-      ->add_option("--from", arguments->from,
-                   "A factor at which the rock holds; default: 0.5, of the yield coefficient 0")
-      ->type_name("A");
-  command
-      ->add_option("--to", arguments->to,
-                   "A factor at which it does not; default: 5, of the yield coefficient 1 to the side to "
-                   "which the ground falls")
-      ->type_name("B");
-  command
-      ->add_option("--tolerance", request.tolerance,
-                   "Where the bisection ends: width of the bracket over the larger of its ends")
-      ->capture_default_str()
-      ->type_name("T");
-  command
-      ->add_option("--sweep", request.scan,
-                   "Also look at N equal parts of the way: what moves at which factor, and whether the rock "
-                   "holds again")
-      ->check(CLI::Range(1, 1000).description(""))
-      ->type_name("N");
+  add_safety_options(*command, *arguments);
   add_limit_realizations(*command, request);
   add_limit_folder(*command, arguments->limit);
   command->add_flag(

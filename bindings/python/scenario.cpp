@@ -30,9 +30,8 @@ auto without_lock(const Scenario& scenario, const Work& work) {
   return work(own);
 }
 
-}  // namespace
-
-void bind_scenario(py::module_& module) {
+/// What a scenario comes to: blocks and key blocks; and what is known of keys.
+void bind_parts(py::module_& module) {
   py::class_<Block> block(module, "Block", py::is_final(), "A block as it is cut, before anything moves.");
   block.def_readonly("rings", &Block::rings, "m: the outer ring, counter-clockwise, then holes.")
       .def_readonly("edges", &Block::edges, "Of each ring, what each edge is a piece of.")
@@ -69,13 +68,11 @@ void bind_scenario(py::module_& module) {
       .def_property_readonly("standard", [](const KeyMeaning& m) { return object_or_none(m.standard); })
       .def_readonly("standard_text", &KeyMeaning::standard_text);
   seal(meaning);
-  // Functions take references: a method by its address would take None for the object, and use it.
-  py::class_<Scenario> scenario(module, "Scenario", py::is_final());
-  scenario.def_static("empty", [] { return Scenario(); })
-      .def("copy", [](const Scenario& s) { return s; })
-      .def_static("load", &Scenario::load, py::arg("file"))
-      .def_static("parse", &Scenario::parse, py::arg("text"), py::arg("file") = "scenario.toml")
-      .def_static("made", &made, py::arg("values"), py::arg("file"))
+}
+
+/// Values by their keys.
+void bind_keys(py::class_<Scenario>& scenario) {
+  scenario
       .def(
           "set",
           [](Scenario& s, const std::string& key, const py::object& value) {
@@ -125,8 +122,22 @@ void bind_scenario(py::module_& module) {
           [](const Scenario& s, const std::string& key) { return s.is_list_of_tables(key); }, py::arg("key"))
       .def_static(
           "check_keys", [](const std::string& key) { Scenario::check_keys(key); }, py::arg("key"))
-      .def_static("known_keys", &Scenario::known_keys, py::arg("table") = "")
-      .def("toml", [](const Scenario& s) { return s.toml(); })
+      .def_static("known_keys", &Scenario::known_keys, py::arg("table") = "");
+}
+
+}  // namespace
+
+void bind_scenario(py::module_& module) {
+  bind_parts(module);
+  // Functions take references: a method by its address would take None for the object, and use it.
+  py::class_<Scenario> scenario(module, "Scenario", py::is_final());
+  scenario.def_static("empty", [] { return Scenario(); })
+      .def("copy", [](const Scenario& s) { return s; })
+      .def_static("load", &Scenario::load, py::arg("file"))
+      .def_static("parse", &Scenario::parse, py::arg("text"), py::arg("file") = "scenario.toml")
+      .def_static("made", &made, py::arg("values"), py::arg("file"));
+  bind_keys(scenario);
+  scenario.def("toml", [](const Scenario& s) { return s.toml(); })
       .def_property_readonly("text", [](const Scenario& s) { return s.text(); })
       .def_property_readonly("file", [](const Scenario& s) { return s.file(); })
       .def(

@@ -69,44 +69,11 @@ void run_steered(const std::filesystem::path& folder, std::size_t run,
   let_go();
 }
 
-}  // namespace
+using SimulationClass = py::class_<Stepped, std::shared_ptr<Stepped>>;
 
-void bind_simulation(py::module_& module) {
-  bind_values(module);
-  module.def("run_of_study_steered", &run_steered, py::arg("folder"), py::arg("run"), py::arg("hooks"),
-             py::arg("steer"));
-  // Functions take references: a method by its address would take None for the object, and use it.
-  py::class_<Stepped, std::shared_ptr<Stepped>> simulation(module, "Simulation", py::is_final(),
-                                                           "A run, step by step.");
-  simulation
-      .def_static(
-          "begin",
-          [](const Scenario& scenario, const std::filesystem::path& folder, int realization, int threads,
-             bool resume, bool replace, std::vector<std::pair<std::string, std::string>> hooks) {
-            return std::make_shared<Stepped>(
-                scenario, RunOptions{folder, realization, threads, resume, replace, std::move(hooks)});
-          },
-          py::arg("scenario"), py::kw_only(), py::arg("folder") = "", py::arg("realization") = 0,
-          py::arg("threads") = 1, py::arg("resume") = false, py::arg("replace") = false,
-          py::arg("hooks") = std::vector<std::pair<std::string, std::string>>())
-      .def(
-          "advance",
-          [](Stepped& s, long steps, const py::object& after_step, const py::object& progress) {
-            return s.advance(steps, after_step, progress);
-          },
-          py::arg("steps") = 1, py::arg("after_step") = py::none(), py::arg("progress") = py::none())
-      .def("finish", [](Stepped& s) { return s.finish(); })
-      .def("close", [](Stepped& s) { s.close(); })
-      .def("stop", [](Stepped& s) { s.stop(); })
-      .def_property_readonly("done", [](const Stepped& s) { return s.at_rest().done(); })
-      .def_property_readonly("time", [](const Stepped& s) { return s.at_rest().time(); })
-      .def_property_readonly("step", [](const Stepped& s) { return s.at_rest().step(); })
-      .def_property_readonly("stage", [](const Stepped& s) { return s.at_rest().stage(); })
-      .def_property_readonly("stages", [](const Stepped& s) { return s.at_rest().stages(); })
-      .def_property_readonly("warnings", [](const Stepped& s) { return s.at_rest().warnings(); })
-      .def_property_readonly("state_hash", [](const Stepped& s) { return s.at_rest().state_hash(); })
-      .def_property_readonly("blocks", [](const Stepped& s) { return s.at_rest().blocks(); })
-      .def_property_readonly("vertices", [](Stepped& s) { return s.vertices(); })
+/// Where blocks are, and what acts on them.
+void bind_state(SimulationClass& simulation) {
+  simulation.def_property_readonly("vertices", [](Stepped& s) { return s.vertices(); })
       .def_property(
           "velocity", [](Stepped& s) { return s.velocity(); },
           [](Stepped& s, const py::array_t<double, py::array::c_style | py::array::forcecast>& values) {
@@ -161,7 +128,12 @@ void bind_simulation(py::module_& module) {
                                  forces.append(py::make_tuple(f.block, f.slot, f.force));
                                return forces;
                              })
-      .def_property_readonly("energy", [](const Stepped& s) { return by_name(s.at_rest().energy()); })
+      .def_property_readonly("energy", [](const Stepped& s) { return by_name(s.at_rest().energy()); });
+}
+
+/// Strengths, and what a program may change between steps.
+void bind_changes(SimulationClass& simulation) {
+  simulation
       .def("strength",
            [](const Stepped& s, const std::string& joint) {
              const JointStrength strength = s.at_rest().strength(joint);
@@ -184,6 +156,46 @@ void bind_simulation(py::module_& module) {
       .def("set_spring_force",
            [](Stepped& s, std::size_t spring, double value) { s.at_rest().set_spring_force(spring, value); })
       .def("set_motion_scale", [](Stepped& s, double factor) { s.at_rest().set_motion_scale(factor); });
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+  bind_values(module);
+  module.def("run_of_study_steered", &run_steered, py::arg("folder"), py::arg("run"), py::arg("hooks"),
+             py::arg("steer"));
+  // Functions take references: a method by its address would take None for the object, and use it.
+  SimulationClass simulation(module, "Simulation", py::is_final(), "A run, step by step.");
+  simulation
+      .def_static(
+          "begin",
+          [](const Scenario& scenario, const std::filesystem::path& folder, int realization, int threads,
+             bool resume, bool replace, std::vector<std::pair<std::string, std::string>> hooks) {
+            return std::make_shared<Stepped>(
+                scenario, RunOptions{folder, realization, threads, resume, replace, std::move(hooks)});
+          },
+          py::arg("scenario"), py::kw_only(), py::arg("folder") = "", py::arg("realization") = 0,
+          py::arg("threads") = 1, py::arg("resume") = false, py::arg("replace") = false,
+          py::arg("hooks") = std::vector<std::pair<std::string, std::string>>())
+      .def(
+          "advance",
+          [](Stepped& s, long steps, const py::object& after_step, const py::object& progress) {
+            return s.advance(steps, after_step, progress);
+          },
+          py::arg("steps") = 1, py::arg("after_step") = py::none(), py::arg("progress") = py::none())
+      .def("finish", [](Stepped& s) { return s.finish(); })
+      .def("close", [](Stepped& s) { s.close(); })
+      .def("stop", [](Stepped& s) { s.stop(); })
+      .def_property_readonly("done", [](const Stepped& s) { return s.at_rest().done(); })
+      .def_property_readonly("time", [](const Stepped& s) { return s.at_rest().time(); })
+      .def_property_readonly("step", [](const Stepped& s) { return s.at_rest().step(); })
+      .def_property_readonly("stage", [](const Stepped& s) { return s.at_rest().stage(); })
+      .def_property_readonly("stages", [](const Stepped& s) { return s.at_rest().stages(); })
+      .def_property_readonly("warnings", [](const Stepped& s) { return s.at_rest().warnings(); })
+      .def_property_readonly("state_hash", [](const Stepped& s) { return s.at_rest().state_hash(); })
+      .def_property_readonly("blocks", [](const Stepped& s) { return s.at_rest().blocks(); });
+  bind_state(simulation);
+  bind_changes(simulation);
   bind_contacts(simulation);
   seal(simulation);
 }

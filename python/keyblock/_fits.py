@@ -128,7 +128,7 @@ def _check_places(file: ResultFile, sizes: dict[str, tuple[int, str]]) -> None:
         if places.shape != (blocks + 1,) or places[0] != 0 or places[-1] != last or not _ascends(places):
             raise _damaged(file, f"model/block_excavations does not ascend from 0 to {last}")
     if file.has("breaks/mode") and "w" in sizes:
-        for name, least, count in (("mode", 0, 2), ("edge_kind", 0, 5), ("element", -1, sizes.get("m", (0, ""))[0])):
+        for name, least, count in (("mode", 0, 3), ("edge_kind", 0, 5), ("element", -1, sizes.get("m", (0, ""))[0])):
             if not _are_places(file.read(f"breaks/{name}"), least, count):
                 raise _damaged(file, f"breaks/{name} has numbers that name nothing")
     if file.has("contacts/end") and "c" in sizes:

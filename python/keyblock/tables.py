@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 HISTORY_COLUMNS = ["ux", "uy", "vx", "vy", "sxx", "syy", "sxy"]  # of results that do not name them
 ELEMENT_COLUMNS = ["force", "elongation"]
-BREAK_MODES = ("tension", "shear")
+BREAK_MODES = ("tension", "shear", "opening")
 RELEASE_COLUMNS = ["stage", "step", "excavation", "released", "crown", "springline", "mean"]
 
 
@@ -85,7 +85,8 @@ def breaks(file: ResultFile, blocks: Blocks, origin: np.ndarray) -> Any:
         return file.read(f"breaks/{name}", slice(0, len(time))) if len(time) else np.zeros(0, dtype=int)
 
     element, mode = read("element"), read("mode")
-    names: list[str] = blocks.edge_names(read("edge_kind"), read("edge_index"))
+    kinds = read("edge_kind")
+    names = ["joints" if kind == 0 else name for kind, name in zip(kinds, blocks.edge_names(kinds, read("edge_index")))]
     if (element >= 0).any():
         known = file.texts("elements/name")
         names = [known[e] if e >= 0 else name for e, name in zip(element, names)]

@@ -10,8 +10,8 @@
 
 namespace keyblock::contact {
 
-/// By what a joint breaks.
-enum class BreakMode : std::uint8_t { none = 0, tension = 1, shear = 2 };
+/// By what a joint breaks: more tension than it bears; slip; or, as it has no tensile strength any more, the opening that takes its cohesion.
+enum class BreakMode : std::uint8_t { none = 0, tension = 1, shear = 2, opening = 3 };
 
 /// Direction of an edge from its outward normal.
 inline Vec2 tangent_of(Vec2 normal) {
@@ -51,6 +51,10 @@ struct Contact {
   [[nodiscard]] Vec2 tangent() const { return tangent_of(normal); }
   /// Whether its joint keeps some cohesion when it slips.
   [[nodiscard]] bool keeps_cohesion() const { return memory.bonded && memory.piece >= 0; }
+  /// Whether it is a bond that ends when it opens, and not by its tensile strength.
+  [[nodiscard]] bool is_lost_by_opening() const {
+    return memory.bonded && !fused && (memory.piece >= 0 || tension == 0.0);
+  }
   /// It bears no tension from now on.
   void tear() {
     tension = 0.0;

@@ -58,6 +58,13 @@ struct JointLaw {
   [[nodiscard]] bool may_bond() const {
     return fused || cohesion > 0.0 || tension > 0.0 || (residual && residual->slip == 0.0);
   }
+  /// Whether slip or opening may take something for good.
+  [[nodiscard]] bool may_break() const { return !fused && (may_bond() || residual); }
+  /// Whether slip takes something of what a joint in place bears.
+  [[nodiscard]] bool may_wear() const {
+    return residual && (residual->friction_coefficient < friction_coefficient ||
+                        residual->cohesion < cohesion || tension > 0.0);
+  }
   /// Whether what a joint bears depends on how far it has slipped.
   [[nodiscard]] bool has_memory() const { return residual.has_value() && !fused; }
   /// f, share of peak strength left after a slip of w.

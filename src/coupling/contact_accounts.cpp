@@ -97,8 +97,9 @@ void remember_states(std::span<const contact::Contact> contacts, const Lanes& cl
   }
 }
 
-/// Joints that keep cohesion when they slip have it until their joint has opened by more than a joint in place may: where it only gapes, its
-/// sides still interlock. So the heel of a block that leans on its toe counts in full, as in limit equilibrium.
+/// Joints without tensile strength have cohesion until their joint has opened by more than a joint in place may: where it only gapes, its sides
+/// still interlock. Those that keep cohesion when they slip hold while they gape, so that the heel of a block that leans on its toe counts in
+/// full, as in limit equilibrium.
 struct KeptCohesion {
   LaneCondition holds, is_lost;
 };
@@ -108,8 +109,9 @@ KeptCohesion kept_cohesion(const Attempt& attempt, std::span<const contact::Cont
   if (!attempt.problem.facts().may_break) return {none, none};
   const Lanes most = broadcast(contact::Tolerances(attempt.model.block_size).in_place);
   const auto keeps = contact::lanes_where(contacts, &contact::Contact::keeps_cohesion),
+             lets_go = contact::lanes_where(contacts, &contact::Contact::is_lost_by_opening),
              is_in_place = springs.penetration(y) >= -most;
-  return {keeps & is_in_place, keeps & ~is_in_place};
+  return {keeps & is_in_place, lets_go & ~is_in_place};
 }
 
 /// The normal force that contacts bear, and that which bounds their friction in the next step. borne: N per thickness, negative in the tension of a

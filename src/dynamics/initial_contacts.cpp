@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/bonded_edge.h"
 #include "contact/law.h"
 #include "core/index.h"
 #include "coupling/facets.h"
@@ -19,15 +20,10 @@ Vec2 place_of(const Model& model, const contact::Contact& c) {
   return lerp(surface.position[at(c.edge)], surface.position[at(surface.next[at(c.edge)])], c.position);
 }
 
-const contact::JointLaw& law_of(const Model& model, const contact::Contact& c, int edge) {
-  return model.laws[at(model.surface.joint_of(edge, c.block_a, c.block_b))];
-}
-
-/// The law that says whether a contact is bonded, and remembers: at a seam that of the joint that has a bond.
+/// The law that says whether a contact is bonded, and remembers.
 const contact::JointLaw& law_of(const Model& model, const contact::Contact& c) {
-  const contact::JointLaw& own = law_of(model, c, c.edge);
-  if (own.may_bond() || !c.at_corner || !model.surface.has_seam(c.vertex)) return own;
-  return law_of(model, c, (c.position < 0.5 ? model.surface.previous : model.surface.next)[at(c.edge)]);
+  const int edge = contact::bonded_edge(model.surface, model.laws, c);
+  return model.laws[at(model.surface.joint_of(edge, c.block_a, c.block_b))];
 }
 
 /// Pa, of the water in the joint at each contact; empty where there is no water.

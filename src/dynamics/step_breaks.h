@@ -23,7 +23,8 @@ struct JointBreak {
 /// | plain | it slips | shear |
 /// | plain | it opens against its tension | tension |
 /// | with residual strength | slip has taken all that it takes | shear |
-/// | with residual strength | it loses its tension, and its cohesion when it has opened | tension |
+/// | with residual strength | it loses its tension | tension |
+/// | with residual strength, or without tension | it loses its cohesion, as it has opened | opening |
 void find_breaks(const Attempt& attempt, std::vector<JointBreak>& breaks);
 
 }  // namespace keyblock::dynamics

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <tuple>
@@ -11,14 +12,15 @@
 namespace keyblock::record {
 
 /// By what a joint or an element breaks.
-enum class BreakMode : std::uint8_t { tension = 0, shear = 1 };
+enum class BreakMode : std::uint8_t { tension = 0, shear = 1, opening = 2 };
 
 /// The last of the modes.
 constexpr BreakMode last_of(BreakMode /*any*/) {
-  return BreakMode::shear;
+  return BreakMode::opening;
 }
 inline std::string name_of(BreakMode mode) {
-  return mode == BreakMode::tension ? "tension" : "shear";
+  constexpr const char* names[] = {"tension", "shear", "opening"};
+  return names[static_cast<std::size_t>(mode)];
 }
 
 /// An event of breaking: a contact of a joint loses its bond, or all that slip and opening take from its strength; or an element ruptures.

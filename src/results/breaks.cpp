@@ -21,6 +21,7 @@ namespace {
 /// The joint set, map, outline or element.
 std::string name_of(const record::ModelRecord& model, cutting::EdgeLabel label, std::int32_t element) {
   if (element >= 0) return model.elements.at(static_cast<std::size_t>(element)).name;
+  if (label.kind == cutting::EdgeKind::free) return "joints";  // as in the scenario
   return cutting::edge_name(label, model.joint_set_names, model.trace_map_names, model.excavation_names);
 }
 

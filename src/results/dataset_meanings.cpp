@@ -213,7 +213,7 @@ Names names_of(cutting::EdgeKind /*any*/) {
   return names_up_to(cutting::EdgeKind::domain, edge_kind_name);
 }
 Names names_of(record::BreakMode /*any*/) {
-  return names_up_to(record::BreakMode::shear, record::name_of);
+  return names_up_to(last_of(record::BreakMode()), record::name_of);
 }
 
 /// The columns of a table that is described by its fields.

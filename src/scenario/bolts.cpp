@@ -45,6 +45,9 @@ std::vector<Part> parts_of(const BoltSpec& spec, const Ring& outline) {
   return all;
 }
 
+/// Of a spacing: an outline of straight sides is a little shorter than the arc that it stands for, and has as many bolts.
+constexpr double short_by = 0.02;
+
 /// m along the parts, of every bolt.
 std::vector<double> places_of(const BoltSpec& spec, double length) {
   const bool is_closed = !spec.arc;
@@ -53,7 +56,7 @@ std::vector<double> places_of(const BoltSpec& spec, double length) {
   double first = 0.0, apart = 0.0;
   if (step > 0.0) {
     count = is_closed ? std::max(1, static_cast<int>(std::lround(length / step)))
-                      : 1 + static_cast<int>(std::floor(length / step * (1.0 + 1e-9)));
+                      : 1 + static_cast<int>(std::floor(length / step + short_by));
     apart = is_closed ? length / count : step;
     first = is_closed ? 0.5 * apart : 0.5 * (length - (count - 1) * step);
   } else if (is_closed || count == 1) {

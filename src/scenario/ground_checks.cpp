@@ -11,10 +11,10 @@
 namespace keyblock::scenario {
 namespace {
 
-/// Of the height of the domain: within it an outline ends at the top.
-constexpr double at_the_top = 1e-6;
+/// Of the height of the domain: what ends so close below the top is meant to open the ground, and was drawn a little short of it.
+constexpr double at_the_top = 0.01;
 
-/// Whether the excavation opens the top of the domain, and leaves rock beside it there.
+/// Whether the excavation comes up to the top of the domain, and leaves rock beside it there.
 bool cuts_the_ground(const ExcavationSpec& spec, const Box& domain) {
   const double top = domain.max.y - at_the_top * domain.size().y;
   double left = HUGE_VAL, right = -HUGE_VAL;
@@ -38,7 +38,7 @@ void add_ground_warnings(const Scenario& scenario, std::vector<std::string>& war
   for (const ExcavationSpec& spec : scenario.excavations) {
     if (!cuts_the_ground(spec, scenario.domain->box())) continue;
     warnings.push_back(fmt::format(
-        "domain.boundary{} = \"frame\": closed ground: {} opens the top of the domain, and the frame "
+        "domain.boundary{} = \"frame\": closed ground: {} comes up to the top of the domain, and the frame "
         "lies on the ground beside it; nothing rises or topples there, and rock that would may seem "
         "to stand; [boundary] with base = \"rigid\", sides = \"roller\", top = \"free\" leaves the "
         "ground free",

@@ -68,6 +68,25 @@ void check_fixed_blocks(TableReader& t, const Scenario& scenario, const Boundary
   }
 }
 
+/// The half-space below the model.
+void read_half_space(TableReader& t, BoundarySpec& boundary, bool applies) {
+  const auto below = [&](Rule rule) {
+    rule.applies = applies;
+    rule.condition = "base = \"compliant\"";
+    return rule;
+  };
+  constexpr std::string_view of_model = "that of the rock at the base";
+  t.number("density", boundary.density,
+           below({.meaning = "Density of the half-space below.",
+                  .unit = "kg/m³",
+                  .above = 0.0,
+                  .fallback = of_model,
+                  .usual = &usual::density}));
+  t.number("vs", boundary.vs, below(speed("Its speed of shear waves.", false, of_model)));
+  t.number("vp", boundary.vp, below(speed("Its speed of pressure waves.", false, of_model)));
+  check_speeds(t, boundary.vs, boundary.vp);
+}
+
 void read_boundary_keys(TableReader& t, Scenario& scenario) {
   BoundarySpec& boundary = scenario.boundary.emplace();
   const bool documenting = t.documenting();
@@ -88,22 +107,7 @@ void read_boundary_keys(TableReader& t, Scenario& scenario) {
            "of [in_situ] depth.",
        .applies = around,
        .condition = "sides other than \"frame\""});
-  const bool half_space = documenting || (around && boundary.compliant);
-  const auto below = [&](Rule rule) {
-    rule.applies = half_space;
-    rule.condition = "base = \"compliant\"";
-    return rule;
-  };
-  constexpr std::string_view of_model = "that of the rock at the base";
-  t.number("density", boundary.density,
-           below({.meaning = "Density of the half-space below.",
-                  .unit = "kg/m³",
-                  .above = 0.0,
-                  .fallback = of_model,
-                  .usual = &usual::density}));
-  t.number("vs", boundary.vs, below(speed("Its speed of shear waves.", false, of_model)));
-  t.number("vp", boundary.vp, below(speed("Its speed of pressure waves.", false, of_model)));
-  check_speeds(t, boundary.vs, boundary.vp);
+  read_half_space(t, boundary, documenting || (around && boundary.compliant));
   t.tables("column", boundary.column,
            {.meaning = "Layers of the rock beside the model, from above.",
             .fallback = "that of the blocks at the sides, with their joints",

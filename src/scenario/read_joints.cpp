@@ -191,7 +191,7 @@ void read_strength(TableReader& t, JointKeys& joints, StrengthKey key, JointsOf 
   });
 }
 
-void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& defaults) {
+void read_strength_keys(TableReader& t, JointKeys& joints, const JointDefaults& defaults) {
   const auto strength = [&](StrengthKey key, const Rule& rule) {
     read_strength(t, joints, key, defaults.of, rule);
   };
@@ -241,6 +241,10 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
        .at_least = 0.0,
        .fallback = defaults.zero,
        .usual = &usual::weakening});
+}
+
+void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& defaults) {
+  read_strength_keys(t, joints, defaults);
   t.number("normal_stiffness", joints.normal_stiffness,
            {.meaning = "Normal stiffness of the joint.",
             .unit = "Pa/m",

@@ -45,6 +45,28 @@ void read_contact_springs(TableReader& t, dynamics::SolverOptions& solver) {
        .above = 0.0});
 }
 
+/// How far the open-close iteration goes for a step, and for its friction.
+void read_iteration(TableReader& t, dynamics::SolverOptions& solver) {
+  t.integer(
+      "max_iterations", solver.max_iterations,
+      {.meaning =
+           "Open-close iterations of a minimization, of which a step has several, before the "
+           "step is retried with half its size; five times as many where damping is stiffer than springs.",
+       .at_least = 1.0,
+       .at_most = 1e6});
+  t.integer("max_halvings", solver.max_halvings,
+            {.meaning = "How often a step is halved at most.", .at_least = 0.0});
+  t.number("bound_tolerance", solver.bound_tolerance,
+           {.meaning =
+                "Error of the friction bounds (L2 over all contacts, over their norm) beyond which they are "
+                "taken anew within a step.",
+            .above = 0.0});
+  t.number("bound_accuracy", solver.bound_accuracy,
+           {.meaning = "The error they are then brought below.", .above = 0.0});
+  t.integer("max_bound_updates", solver.max_bound_updates,
+            {.meaning = "How often they are taken anew at most.", .at_least = 0.0});
+}
+
 void read_solver_keys(TableReader& t, dynamics::SolverOptions& solver, bool without_ground) {
   t.word("integrator", solver.integrator, integrators,
          {.meaning = "Rule of time integration. With [boundary] the default is \"generalized-alpha\"."});
@@ -85,24 +107,7 @@ void read_solver_keys(TableReader& t, dynamics::SolverOptions& solver, bool with
                   "by the moment of the step at which they meet.",
        .at_least = 0.0,
        .at_most = 1.0});
-  t.integer(
-      "max_iterations", solver.max_iterations,
-      {.meaning =
-           "Open-close iterations of a minimization, of which a step has several, before the "
-           "step is retried with half its size; five times as many where damping is stiffer than springs.",
-       .at_least = 1.0,
-       .at_most = 1e6});
-  t.integer("max_halvings", solver.max_halvings,
-            {.meaning = "How often a step is halved at most.", .at_least = 0.0});
-  t.number("bound_tolerance", solver.bound_tolerance,
-           {.meaning =
-                "Error of the friction bounds (L2 over all contacts, over their norm) beyond which they are "
-                "taken anew within a step.",
-            .above = 0.0});
-  t.number("bound_accuracy", solver.bound_accuracy,
-           {.meaning = "The error they are then brought below.", .above = 0.0});
-  t.integer("max_bound_updates", solver.max_bound_updates,
-            {.meaning = "How often they are taken anew at most.", .at_least = 0.0});
+  read_iteration(t, solver);
   read_contact_springs(t, solver);
   t.word("linear", solver.linear, linear_solvers,
          {.meaning = "Solver of the linear systems: `block` factors them in dense blocks, `iterative` takes "

@@ -223,7 +223,7 @@ bool is_still(const Stillness::Memory& still, const Model& model) {
 bool are_breaks(const std::vector<record::BreakCount>& breaks, const RunSetup& setup, const Model& model) {
   const auto is_stage = [&](int stage) { return is_place(stage, setup.stages.size()); };
   return std::all_of(breaks.begin(), breaks.end(), [&](const record::BreakCount& b) {
-    return b.kind <= cutting::EdgeKind::domain && b.mode <= record::BreakMode::shear && b.events > 0 &&
+    return b.kind <= cutting::EdgeKind::domain && b.mode <= last_of(record::BreakMode()) && b.events > 0 &&
            (b.element == -1 || is_place(b.element, element_count(model))) && is_stage(b.first_stage) &&
            is_stage(b.last_stage) && all_finite(std::array{b.length, b.first, b.last});
   });

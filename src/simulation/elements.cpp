@@ -45,8 +45,10 @@ std::size_t element_count(const Model& model) {
 void measure_elements(const Model& model, const State& state, const std::vector<ElementPeak>& peaks,
                       record::Damage& damage) {
   damage.yielded_elements = damage.ruptured_elements = 0;
-  for_carried(model, state, [&](const auto& /*coupling*/, const std::vector<Carried>& carried) {
-    damage.ruptured_elements += static_cast<int>(std::ranges::count(carried, true, &Carried::ruptured));
+  for_carried(model, state, [&](const dynamics::Coupling& coupling, const std::vector<Carried>& carried) {
+    const std::vector<dynamics::Element> elements = coupling.elements();
+    for (std::size_t i = 0; i < carried.size(); ++i)  // without dowels, which go with their bars
+      damage.ruptured_elements += carried[i].ruptured && elements[i].may_rupture ? 1 : 0;
   });
   damage.largest_utilization = std::nan("");
   const std::vector<record::ElementDescription> all = element_descriptions(model);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/bonded_edge.h"
 #include "core/error.h"
 #include "core/index.h"
 #include "coupling/facets.h"
@@ -73,15 +74,20 @@ void put_forces(std::span<const dynamics::ContactForce> forces, std::span<record
 }
 
 bool may_break(const dynamics::Model& model) {
-  const auto joint_may = [](const contact::JointLaw& law) {
-    return !law.fused && (law.may_bond() || law.has_memory());
-  };
-  return std::ranges::any_of(model.laws, joint_may) || may_rupture(model);
+  return std::ranges::any_of(model.laws, &contact::JointLaw::may_break) || may_rupture(model);
+}
+
+record::BreakMode mode_of(contact::BreakMode mode) {
+  if (mode == contact::BreakMode::shear) return record::BreakMode::shear;
+  return mode == contact::BreakMode::opening ? record::BreakMode::opening : record::BreakMode::tension;
 }
 
 double strength_left(const contact::JointLaw& law, const contact::Memory& memory) {
-  if (law.has_memory()) return law.share_left(memory.worn);
-  return law.may_bond() && !law.fused && !memory.bonded ? 0.0 : 1.0;
+  if (law.fused || !law.may_break()) return 1.0;
+  // A joint that has opened has no cohesion any more; of its friction there is what slip has left.
+  const bool friction_falls = law.residual && law.residual->friction_coefficient < law.friction_coefficient;
+  if (law.may_bond() && !memory.bonded && !friction_falls) return 0.0;
+  return law.has_memory() && law.may_wear() ? law.share_left(memory.worn) : 1.0;
 }
 
 void put_strengths(const dynamics::Model& model, std::span<const contact::Contact> contacts,
@@ -91,8 +97,9 @@ void put_strengths(const dynamics::Model& model, std::span<const contact::Contac
     to[k].friction = c.friction_coefficient;
     to[k].cohesion = c.length > 0.0 ? c.cohesion / c.length : 0.0;
     to[k].tension = c.length > 0.0 ? c.tension / c.length : 0.0;
+    const int edge = contact::bonded_edge(model.surface, model.laws, c);
     to[k].strength_left =
-        strength_left(model.laws[at(model.surface.joint_of(c.edge, c.block_a, c.block_b))], c.memory);
+        strength_left(model.laws[at(model.surface.joint_of(edge, c.block_a, c.block_b))], c.memory);
   }
 }
 
@@ -282,8 +289,7 @@ std::vector<record::BreakRecord> Recorder::breaks(const dynamics::State& state,
   for (const dynamics::JointBreak& joint : joints) {
     const cutting::EdgeLabel label = label_of(joint.edge, joint.block_a, joint.block_b);
     record::BreakRecord& row = rows.emplace_back(now);
-    row.mode =
-        joint.mode == contact::BreakMode::tension ? record::BreakMode::tension : record::BreakMode::shear;
+    row.mode = mode_of(joint.mode);
     row.position = joint.position;
     row.length = joint.length;
     row.block_a = joint.block_a;

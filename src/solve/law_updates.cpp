@@ -173,7 +173,9 @@ bool LawUpdates::break_bonds(const StepSystem& system, Iterate& iterate) {
     const bool holds =
         contact.is_ductile || is_spared || std::abs(springs.ks[c] * springs.w[c]) <= springs.bound[c];
     if (!is_pulled && holds) return false;
-    contact.broke = is_pulled ? contact::BreakMode::tension : contact::BreakMode::shear;
+    // Of ideal plasticity slip takes nothing.
+    if (!keeps_cohesion || is_pulled || contact.loss.is_any() || contact.tension > 0.0)
+      contact.broke = is_pulled ? contact::BreakMode::tension : contact::BreakMode::shear;
     // A joint with residual strength keeps some cohesion until it has opened (ContactCoupling::account).
     if (!keeps_cohesion) {
       contact.memory.bonded = false;

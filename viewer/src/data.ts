@@ -198,9 +198,8 @@ export interface Header {
 }
 
 export interface BreakCount {
-  /** Empty where the joint has no name. */
   name: string;
-  mode: "tension" | "shear";
+  mode: "tension" | "shear" | "opening";
   edge_kind: string;
   /** −1: a joint. */
   element: number;

@@ -14,7 +14,15 @@ import { releasePlots } from "./release_plots";
 import { damagePlots, historyPlots, motionPlots, solverPlots } from "./run_plots";
 import { resultSection } from "./result";
 import { Run } from "./run";
-import { cuttingFacts, breakTable, elementTable, movingTable, programFacts, qualityTable, stageTable } from "./tables";
+import {
+  cuttingFacts,
+  breakTable,
+  elementTable,
+  movingTable,
+  programFacts,
+  qualityTable,
+  stageTable,
+} from "./tables";
 import { start } from "./start";
 
 function head(header: Header): HTMLElement {

@@ -149,7 +149,7 @@ export function breakTable(run: Run): HTMLElement | null {
   const moment = (time: number, stage: number) =>
     `${fixed(time, 3)} s, ${run.header.model.stages[stage] ?? stage}`;
   const rows = breaks.map((b) => [
-    h("th", { scope: "row" }, b.name || (b.edge_kind === "free" ? "between blocks" : b.edge_kind)),
+    h("th", { scope: "row" }, b.name || b.edge_kind),
     h("td", { class: "text" }, b.mode),
     h("td", {}, b.events),
     h("td", {}, b.element < 0 ? significant(b.length_m, 3) : "–"),

@@ -63,6 +63,8 @@ TEST(BoltPattern, IsEvenAlongTheArc) {
   spec.arc = {-60.0, 60.0};
   spec.spacing_along = 2.0 * 59.9 * one_degree;
   expect_angles(head_angles(spec), {-59.9, 0.0, 59.9});
+  spec.spacing_along = 2.0 * 60.0 * one_degree;  // the outline is shorter than its arc
+  expect_angles(head_angles(spec), {-60.0, 0.0, 60.0});
   spec.arc.reset();
   spec.spacing_along.reset();
   spec.count = 4;

@@ -38,11 +38,20 @@ kind = "settle"
 excavate = ["cut"]
 )";
 
-const auto closed_ground = HasSubstr("closed ground: excavation.cut opens the top of the domain");
+const auto closed_ground = HasSubstr("closed ground: excavation.cut comes up to the top of the domain");
 
 TEST(GroundWarnings, OfAFrameThatLiesOnTheGroundBesideACut) {
   EXPECT_THAT(warnings_of(cut), Contains(closed_ground));
   EXPECT_THAT(warnings_of(cut, {"accept_warnings=[\"closed-ground\"]"}), Not(Contains(closed_ground)));
+}
+
+TEST(GroundWarnings, OfACutThatIsDrawnALittleShortOfTheTop) {
+  EXPECT_THAT(
+      warnings_of(cut, {"excavation.cut.outer=[[0.0, 10.0], [20.0, 10.0], [37.0, 39.99], [0.0, 39.99]]"}),
+      Contains(closed_ground));
+  EXPECT_THAT(
+      warnings_of(cut, {"excavation.cut.outer=[[0.0, 10.0], [20.0, 10.0], [37.0, 39.0], [0.0, 39.0]]"}),
+      Not(Contains(closed_ground)));
 }
 
 TEST(GroundWarnings, NotWhereTheGroundIsFree) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "../scene.h"
@@ -13,6 +15,11 @@ struct Breaks final : record::RunObserver {
   std::vector<record::BreakRecord> rows;
   void begin(const record::ModelRecord& model) override { may_break = model.may_break; }
   void breaks(const record::BreakRecord& row) override { rows.push_back(row); }
+};
+
+struct LastContacts final : record::RunObserver {
+  std::vector<record::ContactRecord> last;
+  void contacts(const record::ContactFrame& frame) override { last = frame.contacts; }
 };
 
 /// A block of 2 m by 0.5 m that sets out from a floor at 0.3 m/s, bonded or not.
@@ -79,7 +86,78 @@ TEST(Breaks, AreTwoWhereCohesionOutlivesTension) {
   run(scene.setup, {}, breaks);
   ASSERT_EQ(breaks.rows.size(), 4u);
   EXPECT_LT(breaks.rows[1].step, breaks.rows[2].step);
-  for (const record::BreakRecord& row : breaks.rows) EXPECT_EQ(row.mode, record::BreakMode::tension);
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_EQ(breaks.rows[k].mode, k < 2 ? record::BreakMode::tension : record::BreakMode::opening) << k;
+}
+
+/// A block of 1 m, bonded to a floor, that a force along its base pushes, more and more.
+Scene pushed(double height, double cohesion) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({-3.0, -1.0}, 7.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.0}, 1.0, height, 0.0, false, 2);
+  scene.setup.gravity = {0.0, -g};
+  scene.setup.joints.standard.cohesion = cohesion;
+  loading::Load push;
+  push.block = "b1";
+  push.is_line = true;
+  push.from = {0.0, 0.0};
+  push.to = {1.0, 0.0};
+  push.value = push.value_end = {100e3, 0.0};
+  push.factor = loading::TimeTable({{0.0, 0.0}, {1.0, 1.0}});
+  scene.setup.loads.push_back(push);
+  scene.setup.time_step = 0.005;
+  scene.setup.stages = {stage("in place", record::StageKind::settle),
+                        stage("push", record::StageKind::rest, 1.0)};
+  return scene;
+}
+
+// All bonds of a model break in one step, which is taken again with what has been found of it.
+TEST(Breaks, AreToldWhereAllBondsBreakInOneStep) {
+  for (const double height : {0.4, 0.6, 0.8, 1.0}) {
+    Breaks breaks;
+    run(pushed(height, 50e3).setup, {}, breaks);
+    double length = 0.0;
+    for (const record::BreakRecord& row : breaks.rows) {
+      EXPECT_EQ(row.mode, record::BreakMode::shear);
+      // Coulomb, from above: bonds go one after another.
+      EXPECT_LT(row.time, (50e3 + std::tan(30.0 * degree) * 2600.0 * g * height) / 100e3 + 0.005);
+      length += row.length;
+    }
+    EXPECT_NEAR(length, 1.0, 1e-9) << height;
+  }
+}
+
+TEST(Breaks, AreNoneWhereSlipTakesNothing) {
+  Scene scene = pushed(0.1, 20e3);
+  scene.setup.stages[1].duration = 0.25;
+  scene.setup.joints.standard.residual = contact::JointProperties::Residual{30.0, 20e3, 0.0};
+  Breaks breaks;
+  LastContacts contacts;
+  run(scene.setup, {}, breaks);
+  EXPECT_TRUE(breaks.rows.empty());
+  run(scene.setup, {}, contacts);
+  ASSERT_FALSE(contacts.last.empty());
+  double slip = 0.0;
+  for (const record::ContactRecord& contact : contacts.last) slip = std::max(slip, contact.slip());
+  EXPECT_GT(slip, 1e-3);
+  for (const record::ContactRecord& contact : contacts.last) EXPECT_EQ(contact.strength_left, 1.0);
+}
+
+// Without tensile strength the heel of a wall that tips over has its cohesion until it has opened by 1e-4 of the block size.
+TEST(Breaks, AreOfOpeningWhereAWallTipsOver) {
+  Scene scene = pushed(1.0, 50e3);
+  loading::Load& push = scene.setup.loads[0];
+  push.value = push.value_end = {30e3, 0.0};
+  push.from = {0.0, 1.0};
+  push.to = {1.0, 1.0};
+  Breaks breaks;
+  run(scene.setup, {}, breaks);
+  ASSERT_FALSE(breaks.rows.empty());
+  EXPECT_EQ(breaks.rows[0].mode, record::BreakMode::opening);
+  EXPECT_NEAR(breaks.rows[0].position.x, 0.0, 1e-3);
+  EXPECT_NEAR(breaks.rows[0].position.y, 1e-4, 5e-5);
+  // It tips over where the push has the moment of its weight: 0.425 s.
+  EXPECT_NEAR(breaks.rows[0].time, 0.5 * 2600.0 * g / 30e3, 0.04);
 }
 
 // Excavated rock does not break.
