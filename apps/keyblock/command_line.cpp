@@ -71,6 +71,7 @@ void describe(CLI::App& app, int& exit_code) {
   add_study(app);
   add_limit(app);
   add_safety(app);
+  add_bolt(app);
   add_new(app);
   add_schema(app);
   add_completion(app);

@@ -20,6 +20,7 @@ void add_verify(CLI::App& app, int& exit_code);
 
 void add_limit(CLI::App& app);
 void add_safety(CLI::App& app);
+void add_bolt(CLI::App& app);
 /// Around the work: new, schema, completion, manual-page.
 void add_new(CLI::App& app);
 void add_schema(CLI::App& app);

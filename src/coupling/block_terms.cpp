@@ -55,6 +55,7 @@ void BlockTerms::build(const Model& model, const State& state, const Drive& driv
   if (model_ != &model) begin(model);
   is_static_ = drive.is_static;
   build_blocks(state, drive);
+  build_lines(state, drive);
   add_loads(state, drive);
   for (std::size_t k = 0; k < model.couplings.size(); ++k)
     model.couplings[k]->add_terms(model, state, drive, state.couplings[k], *this);
@@ -69,20 +70,23 @@ void BlockTerms::begin(const Model& model) {
   largest_size_ = 0;
   std::size_t used = 0;
   for (const Block& block : model.blocks) {
-    largest_size_ = std::max(largest_size_, block.size);
-    h_first_.push_back(used);
     body_force_.push_back(block.body_force());
     frequency_.push_back(std::numbers::pi *
                          std::sqrt(block.material.young / (block.material.density * block.area)));
-    coefficients_.emplace_back(block.first, block.first + 2 * at(block.size));
-    used += at(linalg::padded_rows(2 * block.size) * 2 * block.size);
+  }
+  for (std::size_t b = 0; b < model.bodies(); ++b) {
+    const Body& body = model.body(b);
+    largest_size_ = std::max(largest_size_, body.size);
+    h_first_.push_back(used);
+    coefficients_.emplace_back(body.first, body.first + 2 * at(body.size));
+    used += at(linalg::padded_rows(2 * body.size) * 2 * body.size);
   }
   h_.assign(used, 0.0);
   b_.assign(model.coefficients, 0.0);
-  inertia_.assign(model.blocks.size(), 0.0);
+  inertia_.assign(model.bodies(), 0.0);
   rigid_.assign(model.blocks.size(), 0.0);
   viscous_.assign(model.blocks.size(), 0.0);
-  weight_.assign(model.blocks.size(), 0.0);
+  weight_.assign(model.bodies(), 0.0);
   stress_.assign(model.blocks.size(), 0.0);
   for (std::size_t i = 0; i < model.blocks.size() && model.gravity == Vec2{}; ++i) {
     const block::Stress s = block::in_situ_at(model.in_situ, model.blocks[i].centroid);
@@ -104,20 +108,39 @@ template <typename Size>
 void BlockTerms::linearize(Size size, std::size_t i, const State& state, const Drive& drive,
                            Vec2 acceleration, double* geometric) {
   const Block& block = model_->blocks[i];
-  const int n = 2 * size, stride = linalg::padded_rows(n);
-  const double* v = &state.velocity[block.first];
   double *b = &b_[block.first], *h = &h_[h_first_[i]];
-  block.elasticity.add_force_and_material_tangent(&state.position[block.first], viscous_[i], b, h, stride,
-                                                  geometric);
-  for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
-  if (!drive.is_static && !state.acceleration.empty()) {
-    const double c_a = drive.rule[i].acceleration() * block.material.density,
-                 c_f = drive.rule[i].force() * block.material.density;
-    for (std::size_t k = 0; k < at(n); ++k)
-      b[k] += c_a * state.acceleration[block.first + k] + c_f * state.force[block.first + k];
-  }
+  block.elasticity.add_force_and_material_tangent(&state.position[block.first], viscous_[i], b, h,
+                                                  linalg::padded_rows(2 * size), geometric);
+  add_motion(size, i, state, drive);
   b[0] += block.body_force() * acceleration.x;
   b[1] += block.body_force() * acceleration.y;
+}
+
+/// b ← −b + M (c v/Δt + c_a a + c_F F)
+template <typename Size>
+void BlockTerms::add_motion(Size size, std::size_t i, const State& state, const Drive& drive) {
+  const Body& body = model_->body(i);
+  const int n = 2 * size;
+  const double* v = &state.velocity[body.first];
+  double* b = &b_[body.first];
+  for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
+  if (drive.is_static || state.acceleration.empty()) return;
+  const double c_a = drive.rule[i].acceleration() * body.material.density,
+               c_f = drive.rule[i].force() * body.material.density;
+  for (std::size_t k = 0; k < at(n); ++k)
+    b[k] += c_a * state.acceleration[body.first + k] + c_f * state.force[body.first + k];
+}
+
+/// Inertia alone; static steps do not hold it back where they hold blocks.
+void BlockTerms::build_line(std::size_t i, const State& state, const Drive& drive) {
+  const Body& line = model_->body(i);
+  const int n = 2 * line.size, stride = linalg::padded_rows(n);
+  std::fill_n(&b_[line.first], n, 0.0);
+  double* h = &h_[h_first_[i]];
+  std::fill_n(h, n * stride, 0.0);
+  inertia_[i] = drive.rule[i].inertia() / (drive.step * drive.step) * line.material.density;
+  for (int k = 0; k < n; ++k) h[k * stride + k] = inertia_[i];
+  add_motion(line.size, i, state, drive);
 }
 
 template <typename Size>
@@ -194,6 +217,12 @@ void BlockTerms::build_blocks(const State& state, const Drive& drive) {
   });
 }
 
+void BlockTerms::build_lines(const State& state, const Drive& drive) {
+  team_->for_range(model_->lines.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) build_line(model_->blocks.size() + i, state, drive);
+  });
+}
+
 /// Adds what resists all motion of a block but that of a rigid body: of coefficients beyond the mean, all but the turn.
 void BlockTerms::make_rigid(std::size_t i, const State& state) {
   const Block& block = model_->blocks[i];
@@ -228,8 +257,17 @@ void BlockTerms::add_loads(const State& state, const Drive& drive) {
     }
     weight_[at(load.block)] = std::max(weight_[at(load.block)], largest);
   }
-  if (model_->gravity != Vec2{}) return;
-  add_weights(*model_, state, drive, weight_);
+  if (model_->gravity == Vec2{}) add_weights(*model_, state, drive, weight_);
+  weigh_lines();
+}
+
+/// A force that is small beside those of the block is small.
+void BlockTerms::weigh_lines() {
+  for (std::size_t l = 0; l < model_->lines.size(); ++l) {
+    const LineBody& line = model_->lines[l];
+    weight_[model_->blocks.size() + l] =
+        weight_[at(line.block)] * std::sqrt(model_->blocks[at(line.block)].area / line.area);
+  }
 }
 
 /// Largest |b_k| of a block.
@@ -244,7 +282,7 @@ void BlockTerms::weigh_motion(const Drive& drive, double row_force) {
   has_weights_ = true;
   if (model_->gravity != Vec2{}) return;
   double largest_weight = 0.0, largest = 0.0;
-  for (std::size_t i = 0; i < weight_.size(); ++i) {
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
     if (!model_->moves(i)) continue;
     largest_weight = std::max(largest_weight, weight_[i]);
     largest = std::max({largest, largest_of_right(i), row_force / std::sqrt(model_->blocks[i].area)});
@@ -254,6 +292,7 @@ void BlockTerms::weigh_motion(const Drive& drive, double row_force) {
   const bool by_loads = drive.is_static && largest_weight > 0.0;
   const double least = by_loads ? largest_weight : motion_share * std::max(largest, largest_weight);
   for (double& weight : weight_) weight = by_loads && weight > 0.0 ? weight : std::max(weight, least);
+  weigh_lines();
 }
 
 void BlockTerms::add_spring(std::size_t b, int axis, std::span<const double> phi, double stiffness,
@@ -293,7 +332,7 @@ void BlockTerms::multiply(std::size_t i, std::span<const double> x, std::span<do
 }
 
 void BlockTerms::solve_alone(std::size_t i, std::span<double> d) const {
-  const Block& block = model_->blocks[i];
+  const Body& block = model_->body(i);
   const int n = 2 * block.size;
   std::copy_n(&b_[block.first], n, &d[block.first]);
   // A block that buckles in a static step stays where it is: its residual then shows that the step has no solution.
@@ -302,15 +341,15 @@ void BlockTerms::solve_alone(std::size_t i, std::span<double> d) const {
 
 void BlockTerms::assemble(linalg::BlockSolver& solver) const {
   solver.clear();
-  team_->for_range(model_->blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+  team_->for_range(model_->bodies(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (model_->blocks[i].unknown >= 0) assemble_block(i, solver);
+      if (model_->body(i).unknown >= 0) assemble_block(i, solver);
     }
   });
 }
 
 void BlockTerms::assemble_block(std::size_t i, linalg::BlockSolver& solver) const {
-  const Block& block = model_->blocks[i];
+  const Body& block = model_->body(i);
   const int n = 2 * block.size, stride = linalg::padded_rows(n);
   double* diagonal = solver.diagonal(block.unknown);
   if (model_->moves(i)) {
@@ -337,7 +376,7 @@ double BlockTerms::residual_ratio(std::size_t i, std::span<const double> g) cons
 }
 
 double BlockTerms::residual_ratio(std::span<const double> g) const {
-  return largest_of(*team_, model_->blocks.size(), blocks_worth_threads,
+  return largest_of(*team_, model_->bodies(), blocks_worth_threads,
                     [&](std::size_t i) { return residual_ratio(i, g); });
 }
 

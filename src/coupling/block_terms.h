@@ -15,7 +15,7 @@
 
 namespace keyblock::dynamics {
 
-/// What a step has of its blocks, loads and supports: the quadratic part of the minimization (docs/theory.md, section "One step"),
+/// What a step has of its bodies, loads and supports: the quadratic part of the minimization (docs/theory.md, section "One step"),
 ///
 ///     ½ Dᵀ H D − bᵀ D,      H = c/Δt² M + K_t + K_support  (block diagonal),      b = f_ext − f_int + f_support + M (c v/Δt + c_a a + c_F F)
 ///
@@ -69,7 +69,7 @@ class BlockTerms {
   [[nodiscard]] bool has_weights() const { return has_weights_; }
   /// N/m per thickness and unit area: largest of a coefficient of the block, without inertia.
   [[nodiscard]] double largest_stiffness(std::size_t block) const;
-  /// cρ/Δt², of each block; 0: it does not move.
+  /// cρ/Δt², of each body; 0: it does not move.
   [[nodiscard]] std::span<const double> inertias() const { return inertia_; }
   [[nodiscard]] double inertia(std::size_t block) const { return inertia_[block]; }
   /// The first coefficient of a block, and the one after its last.
@@ -101,6 +101,11 @@ class BlockTerms {
   void finish_block(Size size, std::size_t i, const double* geometric);
   void finish_blocks(PressedBlocks& pressed);
   void build_blocks(const State& state, const Drive& drive);
+  template <typename Size>
+  void add_motion(Size size, std::size_t i, const State& state, const Drive& drive);
+  void build_line(std::size_t i, const State& state, const Drive& drive);
+  void build_lines(const State& state, const Drive& drive);
+  void weigh_lines();
   void make_rigid(std::size_t block, const State& state);
   void add_loads(const State& state, const Drive& drive);
   [[nodiscard]] double largest_of_right(std::size_t i) const;
@@ -112,7 +117,7 @@ class BlockTerms {
   ThreadTeam* team_ = nullptr;
   int largest_size_ = 0;  ///< N
   std::vector<std::pair<std::uint32_t, std::uint32_t>> coefficients_;
-  std::vector<std::size_t> h_first_;  ///< per block, into h_
+  std::vector<std::size_t> h_first_;  ///< per body, into h_
   std::vector<double> h_;             ///< H of each, columns of padded_rows(2N)
   std::vector<double> b_;
   std::vector<double> inertia_;
@@ -121,7 +126,7 @@ class BlockTerms {
   std::vector<double> viscous_;     ///< per block, β/Δt: viscosity of the rock over its stiffness
   std::vector<double> body_force_;  ///< per block, Block::body_force
   std::vector<double> frequency_;   ///< rad/s, per block: its first elastic one, about
-  std::vector<double> weight_;      ///< per block, N-like scale of its coefficients
+  std::vector<double> weight_;      ///< per body, N-like scale of its coefficients
   bool has_weights_ = false, is_static_ = false;
   std::vector<double> stress_;  ///< the same of its in-situ stress, where there is no gravity; else 0
 };

@@ -26,9 +26,9 @@ struct State;
 class StepProblem;
 class StillWater;
 
-/// A material point of a block, by the block's basis functions there.
+/// A material point of a body, a block or nodes of a line, by the basis functions of the body there.
 struct MaterialPoint {
-  int block = 0;
+  int block = 0;            ///< number of the body
   std::vector<double> phi;  ///< N values
 };
 

@@ -20,8 +20,10 @@ struct State;
 class StagedSupports {
  public:
   virtual ~StagedSupports() = default;
-  /// They come to life, without force at the positions of the state. now: as State::installed, those that do.
-  virtual void install(const Model& model, const State& state, std::span<const std::uint8_t> now,
+  /// Puts bodies of their own where they belong, before the run.
+  virtual void place(const Model& /*model*/, State& /*state*/) const {}
+  /// They come to life, without force at the positions of the state. Bodies of their own are put where they belong. now: as State::installed, those that do.
+  virtual void install(const Model& model, State& state, std::span<const std::uint8_t> now,
                        std::span<double> memory) const = 0;
   /// The stage is over that installed them: what was held while it lasted is held no more.
   virtual void end_stage(const Model& /*model*/, const State& /*state*/, std::span<double> /*memory*/) const {

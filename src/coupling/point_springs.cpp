@@ -18,9 +18,13 @@ namespace {
 /// Of the strength of a dowel, that a change of its bound has to be worth a minimization.
 constexpr double settled_bound = 1e-3;
 
+Vec2 value_of(const Model& model, const std::vector<double>& coefficients, const MaterialPoint& point) {
+  const Body& body = model.body(at(point.block));
+  return field_at(point.phi.data(), body.size, &coefficients[body.first]);
+}
+
 Vec2 position_of(const Model& model, const State& state, const MaterialPoint& point) {
-  const Block& block = model.blocks[at(point.block)];
-  return field_at(point.phi.data(), block.size, &state.position[block.first]);
+  return value_of(model, state.position, point);
 }
 
 Vec2 unit(Vec2 v) {
@@ -46,9 +50,8 @@ void PointSprings::add_pairs(BlockPairs& pairs) const {
 bool PointSprings::is_there(const Model& model, const State& state, std::size_t k,
                             std::span<const double> memory) const {
   const int staged = springs_[k].staged;
-  return (staged < 0 || state.installed[at(staged)] != 0) &&
-         model.surface.present[at(end(k, 0).block)] != 0 && model.surface.present[at(end(k, 1).block)] != 0 &&
-         !is_broken(k, memory);
+  return (staged < 0 || state.installed[at(staged)] != 0) && model.surface.present[at(block_of(k, 0))] != 0 &&
+         model.surface.present[at(block_of(k, 1))] != 0 && !is_broken(k, memory);
 }
 
 PointSprings::Line PointSprings::line_of(const Model& model, const State& state, std::size_t k) const {
@@ -56,9 +59,16 @@ PointSprings::Line PointSprings::line_of(const Model& model, const State& state,
     return position_of(model, state, end(spring, which));
   };
   const Vec2 from = place(k, 0), apart = from - place(k, 1);
-  if (springs_[k].across < 0) return {unit(apart), norm(apart)};
-  const std::size_t bar = bar_of(k);
-  const Vec2 axis = unit(unit(place(bar, 0) - from) + unit(place(k, 1) - place(bar, 1))),
+  if (springs_[k].has_own_line()) return {unit(apart), norm(apart)};
+  if (springs_[k].along >= 0) {
+    const std::size_t bar = at(springs_[k].along);
+    Line line{unit(place(bar, 1) - place(bar, 0))};
+    line.length = dot(line.along, apart);
+    line.aside = -dot(line.normal(), apart);
+    return line;
+  }
+  const Vec2 axis = unit(unit(position_of(model, state, hole(k, 0)) - from) +
+                         unit(place(k, 1) - position_of(model, state, hole(k, 1)))),
              along{-axis.y, axis.x};
   return {along, dot(along, apart)};
 }
@@ -82,7 +92,7 @@ RowFacts PointSprings::build(const Model& model, const State& state, const Drive
     row.unknown_a = out.points.body(a).unknown;
     row.unknown_b = out.points.body(b).unknown;
     row.pair = pair_in(state.pattern, row.unknown_a, row.unknown_b);
-    if (line.along != Vec2{}) row.normal = {line.along.y, -line.along.x};
+    if (line.along != Vec2{}) row.normal = line.normal();
     row.moved = drive.prescribed.empty() ? Vec2{} : drive.prescribed[a] - drive.prescribed[b];
     out.owners.set(out.first + k, row.unknown_a, row.unknown_b);
     facts.lacks_room |= row.pair == Row::without_room;
@@ -98,13 +108,15 @@ RowFacts PointSprings::build(const Model& model, const State& state, const Drive
                  most = is_dowel ? strength_across(k, forces[bar_of(k)]) : spring.yield;
     forces[k] = force_of(model, k, stretch);
     facts.may_change_laws |= is_dowel && std::isfinite(spring.yield_along);
-    out.springs.set_row(out.first + k,
-                        {.normal_stiffness = is_dowel ? 0.0 : place * std::max(forces[k], 0.0) / line.length,
-                         .shear_stiffness = place * stiffness,
-                         .least_shear = is_dowel ? -most : spring.least(),
-                         .largest_shear = most,
-                         .normal = -dot(row.normal, row.moved),
-                         .shear = stretch / place + dot(row.tangent(), row.moved)});
+    out.springs.set_row(
+        out.first + k,
+        {.normal_stiffness =
+             spring.has_own_line() ? place * std::max(forces[k], 0.0) / line.length : spring.hold,
+         .shear_stiffness = place * stiffness,
+         .least_shear = is_dowel ? -most : spring.least(),
+         .largest_shear = most,
+         .normal = (spring.hold > 0.0 ? line.aside : 0.0) - dot(row.normal, row.moved),
+         .shear = stretch / place + dot(row.tangent(), row.moved)});
   }
   return facts;
 }
@@ -172,11 +184,34 @@ void PointSprings::set_force(const Model& model, const State& state, std::size_t
   memory[k] = line_of(model, state, k).length - springs_[k].length() - force / stiffness_of(model, k);
 }
 
-void PointSprings::install(const Model& model, const State& state, std::span<const std::uint8_t> now,
+void PointSprings::place_node(const Model& model, State& state, std::size_t k) const {
+  const MaterialPoint& node = end(k, 0);
+  const Body& line = model.body(at(node.block));
+  const Vec2 place = position_of(model, state, end(k, 1)),
+             velocity = value_of(model, state.velocity, end(k, 1));
+  for (std::size_t i = 0; i < node.phi.size(); ++i) {
+    if (node.phi[i] == 0.0) continue;
+    const std::size_t c = line.first + 2 * i;
+    state.position[c] = place.x / node.phi[i];
+    state.position[c + 1] = place.y / node.phi[i];
+    state.velocity[c] = velocity.x / node.phi[i];
+    state.velocity[c + 1] = velocity.y / node.phi[i];
+  }
+}
+
+void PointSprings::place(const Model& model, State& state) const {
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    if (springs_[k].along >= 0) place_node(model, state, k);
+  }
+}
+
+void PointSprings::install(const Model& model, State& state, std::span<const std::uint8_t> now,
                            std::span<double> memory) const {
   for (std::size_t k = 0; k < springs_.size(); ++k) {
-    const int staged = springs_[k].staged;
-    if (staged < 0 || now[at(staged)] == 0) continue;
+    if (is_installed_by(k, now) && springs_[k].along >= 0) place_node(model, state, k);
+  }
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    if (!is_installed_by(k, now)) continue;
     memory[k] = memory[installed(k)] = line_of(model, state, k).length - springs_[k].length();
     if (springs_[k].pretension > 0.0) memory[held(k)] = 1.0;
   }
@@ -198,12 +233,14 @@ CouplingTotals PointSprings::account(const Attempt& attempt, std::span<const dou
     const std::size_t c = first + k;
     if (rows.ks[c] == 0.0) continue;
     const Row& row = attempt.problem.rows()[c];
-    const double stiffness = stiffness_of(model, k), before = stretch_of(model, attempt.state, k, memory);
+    const Line line = line_of(model, attempt.state, k);
+    const double stiffness = stiffness_of(model, k), before = stretch_of(model, k, line.length, memory),
+                 aside = springs_[k].hold > 0.0 ? rows.y[c] : 0.0;
     const End end = end_of(attempt.problem, first, k, before);
     const Vec2 on_points = row.gradient(rows.force(c));  // that stretches the spring
     const bool breaks_now = breaks(rows, first, k);
-    const double stored_before = energy_of(model, k, before),
-                 stored = 0.5 * end.force * end.force / stiffness,
+    const double stored_before = energy_of(model, k, line, memory),
+                 stored = 0.5 * end.force * end.force / stiffness + 0.5 * springs_[k].hold * aside * aside,
                  dissipated = breaks_now ? stored_before : std::abs(end.force * end.beyond);
     memory[k] += end.beyond;
     if (end.force <= rows.least[c] || end.force >= rows.bound[c]) memory[yielded(k)] += end.beyond;
@@ -229,7 +266,7 @@ double PointSprings::stored_energy(const Model& model, const State& state, doubl
                                    std::span<const double> memory) const {
   double sum = 0.0;
   for (std::size_t k = 0; k < springs_.size(); ++k) {
-    if (is_there(model, state, k, memory)) sum += energy_of(model, k, stretch_of(model, state, k, memory));
+    if (is_there(model, state, k, memory)) sum += energy_of(model, k, line_of(model, state, k), memory);
   }
   return sum;
 }
@@ -240,9 +277,9 @@ std::vector<Element> PointSprings::elements() const {
     const PointSpring& spring = springs_[k];
     all.push_back({.kind = spring.kind,
                    .name = spring.name,
-                   .limit = spring.yield,
-                   .from = {spring.from, end(k, 0).block},
-                   .to = {spring.to, end(k, 1).block},
+                   .limit = spring.along < 0 ? spring.yield : HUGE_VAL,
+                   .from = {spring.from, block_of(k, 0)},
+                   .to = {spring.to, block_of(k, 1)},
                    .spacing = spring.spacing,
                    .may_rupture = std::isfinite(spring.rupture)});
   }

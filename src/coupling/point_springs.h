@@ -12,7 +12,7 @@
 
 namespace keyblock::dynamics {
 
-/// A spring between material points of two blocks: along the line between them, or across the line of another spring.
+/// A spring between material points of two bodies: along the line between them, or along or across the line of another spring.
 struct PointSpring {
   std::string name;
   double stiffness = 0.0;  ///< N/m per thickness
@@ -28,14 +28,22 @@ struct PointSpring {
       std::numeric_limits<double>::infinity();  ///< m of yielded elongation, beyond which it breaks
   double pretension = 0.0;  ///< N per thickness, held until the end of the stage that installs it
   int across = -1;  ///< the spring, by number, across whose line it acts: a dowel; −1: along its own line
+  std::pair<int, int> holes{
+      -1,
+      -1};  ///< of a dowel: springs whose second ends are where the ends of its bar were put in; −1: those ends
+  int along = -1;     ///< the spring, by number, along whose line it acts: grout of a node; −1 likewise
+  double hold = 0.0;  ///< N/m per thickness, across the line of `along`: what keeps a node in its hole
+  std::pair<int, int> in{
+      -1, -1};  ///< blocks without which it is not there; −1: the body of the end at hand, which is a block
   double yield_along = std::numeric_limits<double>::infinity();  ///< N per thickness, of the bar of a dowel
 
   [[nodiscard]] double least() const { return pulls_only ? 0.0 : -std::min(yield, push); }
   [[nodiscard]] bool has_events() const {
     return rupture < std::numeric_limits<double>::infinity() || pretension > 0.0;
   }
+  [[nodiscard]] bool has_own_line() const { return across < 0 && along < 0; }
   /// m, between its ends without force.
-  [[nodiscard]] double length() const { return across < 0 ? norm(from - to) : 0.0; }
+  [[nodiscard]] double length() const { return has_own_line() ? norm(from - to) : 0.0; }
 };
 
 /// Springs between points of blocks: a coupling by rows. The shear spring of a row acts along the line between its points,
@@ -51,6 +59,10 @@ struct PointSpring {
 /// A dowel acts across the line of another spring, the bar, from a point of the one block to a point of the other: in the place of the length is
 /// how far they are apart across the mean of the directions of the bar in the two blocks. It bears yield √(1 − (N/N_y)²) with the force N of the
 /// bar, frozen while a step is minimized.
+///
+/// The grout of a node acts along the line of a bar, from the node to the point of the rock where it was put in: in the place of the length is how
+/// far the node has come out there, from the first end of the bar to its second. What it yields is slip. `hold` acts across, both ways, without
+/// a limit. A plate is such a spring that pulls only.
 ///
 /// Events: a spring whose yielded elongation passes `rupture` breaks for good, and its dowel with it. While the stage that installs a spring with
 /// pretension lasts, p is such that each step begins with that force; what a jack does then is input.
@@ -87,7 +99,8 @@ class PointSprings final : public Coupling, public StagedSupports {
   void change_laws(const StepProblem& problem, std::size_t first, std::span<const double> memory,
                    std::vector<LawChange>& changes) const override;
   [[nodiscard]] const StagedSupports* staged_supports() const override { return this; }
-  void install(const Model& model, const State& state, std::span<const std::uint8_t> now,
+  void place(const Model& model, State& state) const override;
+  void install(const Model& model, State& state, std::span<const std::uint8_t> now,
                std::span<double> memory) const override;
   void end_stage(const Model& model, const State& state, std::span<double> memory) const override;
   CouplingTotals account(const Attempt& attempt, std::span<const double> spin, std::size_t first,
@@ -103,7 +116,10 @@ class PointSprings final : public Coupling, public StagedSupports {
   /// Where a spring acts: along which direction, and how long it is.
   struct Line {
     Vec2 along;           ///< of length 1; zero: it has none
-    double length = 0.0;  ///< m; of a dowel across its bar, with its sign
+    double length = 0.0;  ///< m; of a dowel across its bar, and of grout along it, with its sign
+    double aside = 0.0;   ///< m, of what `hold` acts on
+
+    [[nodiscard]] Vec2 normal() const { return {along.y, -along.x}; }
   };
   /// A spring at the end of a step.
   struct End {
@@ -114,8 +130,23 @@ class PointSprings final : public Coupling, public StagedSupports {
   [[nodiscard]] const MaterialPoint& end(std::size_t k, std::size_t which) const {
     return points_[2 * k + which];
   }
+  /// Where an end of the bar of a dowel is in its hole.
+  [[nodiscard]] const MaterialPoint& hole(std::size_t k, std::size_t which) const {
+    const int other = which == 0 ? springs_[k].holes.first : springs_[k].holes.second;
+    return other >= 0 ? end(at(other), 1) : end(bar_of(k), which);
+  }
   [[nodiscard]] bool is_there(const Model& model, const State& state, std::size_t k,
                               std::span<const double> memory) const;
+  /// The block that an end is in.
+  [[nodiscard]] int block_of(std::size_t k, std::size_t which) const {
+    const int in = which == 0 ? springs_[k].in.first : springs_[k].in.second;
+    return in >= 0 ? in : end(k, which).block;
+  }
+  [[nodiscard]] bool is_installed_by(std::size_t k, std::span<const std::uint8_t> now) const {
+    return springs_[k].staged >= 0 && now[at(springs_[k].staged)] != 0;
+  }
+  /// Puts its node where its hole is, at rest in it.
+  void place_node(const Model& model, State& state, std::size_t k) const;
   /// N/m, which a program that steers the run may have changed.
   [[nodiscard]] double stiffness_of(const Model& model, std::size_t k) const {
     return model.spring_stiffness.empty() ? springs_[k].stiffness : model.spring_stiffness[k];
@@ -126,6 +157,12 @@ class PointSprings final : public Coupling, public StagedSupports {
   /// J per thickness.
   [[nodiscard]] double energy_of(const Model& model, std::size_t k, double stretch) const {
     return springs_[k].pulls_only && stretch < 0.0 ? 0.0 : 0.5 * stiffness_of(model, k) * stretch * stretch;
+  }
+  /// The same, and what holds a node.
+  [[nodiscard]] double energy_of(const Model& model, std::size_t k, const Line& line,
+                                 std::span<const double> memory) const {
+    return energy_of(model, k, stretch_of(model, k, line.length, memory)) +
+           0.5 * springs_[k].hold * line.aside * line.aside;
   }
   /// N per thickness, of a dowel whose bar has this force.
   [[nodiscard]] double strength_across(std::size_t k, double along) const;

@@ -11,10 +11,12 @@ void Points::begin(const Model& model) {
   surface_ = &model.surface;
   bodies_.clear();
   block_of_unknown_.clear();
-  for (const Block& block : model.blocks) {
-    bodies_.push_back({static_cast<std::uint32_t>(block.first), block.fixed ? 0 : block.size, block.unknown,
-                       block.fixed ? 0.0 : block.mass()});
-    if (block.unknown >= 0) block_of_unknown_.push_back(bodies_.size() - 1);
+  blocks_ = model.blocks.size();
+  for (std::size_t b = 0; b < model.bodies(); ++b) {
+    const dynamics::Body& body = model.body(b);
+    bodies_.push_back({static_cast<std::uint32_t>(body.first), body.fixed ? 0 : body.size, body.unknown,
+                       body.fixed ? 0.0 : body.mass()});
+    if (body.unknown >= 0) block_of_unknown_.push_back(b);
   }
   most_vertices_ = 0;
   for (const contact::DividedEdge& edge : surface_->divided)
@@ -24,7 +26,7 @@ void Points::begin(const Model& model) {
   of_block_.clear();
   for (const auto& coupling : model.couplings) {
     for (const MaterialPoint& point : coupling->points()) {
-      of_block_.resize(model.blocks.size());
+      of_block_.resize(model.bodies());
       of_block_[at(point.block)].push_back(phi_of_point_.size());
       phi_of_point_.push_back(point.phi.data());
       block_of_point_.push_back(point.block);
@@ -83,7 +85,7 @@ void Points::displace(std::span<const double> d, std::span<const std::size_t> bl
 void Points::displace_block(std::size_t b, std::span<const double> d, std::span<Vec2> u) const {
   const int size = bodies_[b].size;
   const double* of_block = &d[bodies_[b].first];
-  for_vertex_values(*surface_, b, size, of_block, [&](std::size_t v, Vec2 x) { u[v] = x; });
+  if (b < blocks_) for_vertex_values(*surface_, b, size, of_block, [&](std::size_t v, Vec2 x) { u[v] = x; });
   for_material_points(
       b, [&](std::size_t k) { u[material_point(k)] = field_at(phi_of_point_[k], size, of_block); });
 }
@@ -100,8 +102,8 @@ void Points::add_forces(std::size_t b, std::span<const Vec2> forces, std::span<d
   double* coefficients = &out[bodies_[b].first];
   with_known_size(bodies_[b].size, [&](auto size) {
     if constexpr (std::is_same_v<decltype(size), int>) {
-      for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v)
-        add_at(phi_of_vertex(v), size, forces[v], coefficients);
+      const auto [begin, end] = vertices_of(b);
+      for (std::size_t v = begin; v < end; ++v) add_at(phi_of_vertex(v), size, forces[v], coefficients);
       for_material_points(
           b, [&](std::size_t k) { add_at(phi_of_point_[k], size, forces[material_point(k)], coefficients); });
     } else {

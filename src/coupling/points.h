@@ -19,12 +19,12 @@
 
 namespace keyblock::dynamics {
 
-/// The points of blocks that rows connect, and how they follow the increment: u = T D. In the order of u,
+/// The points of bodies that rows connect, and how they follow the increment: u = T D. In the order of u,
 ///
 ///     the vertices of the surface,   material points of couplings,   where edges are divided: the point of each contact on its curve
 class Points {
  public:
-  /// What rows read of a block: 24 bytes, which a cache has for all blocks.
+  /// What rows read of a body: 24 bytes, which a cache has for all of them.
   struct Body {
     std::uint32_t first;  ///< of its coefficients
     int size;             ///< N; 0: fixed
@@ -43,7 +43,7 @@ class Points {
   }
 
   [[nodiscard]] const Body& body(std::size_t block) const { return bodies_[block]; }
-  /// The block with this number among the unknown ones.
+  /// The body with this number among the unknown ones.
   [[nodiscard]] std::size_t block_of_unknown(std::size_t unknown) const { return block_of_unknown_[unknown]; }
   [[nodiscard]] const Body& body_of(std::uint32_t point) const { return bodies_[at(block_of(point))]; }
 
@@ -109,6 +109,11 @@ class Points {
   }
   [[nodiscard]] std::size_t contact_on_curve(std::uint32_t point) const { return point - gathered(); }
   [[nodiscard]] int block_of(std::uint32_t point) const;
+  /// The first vertex of a body and the one after its last; lines have none.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> vertices_of(std::size_t body) const {
+    if (body >= blocks_) return {};
+    return {at(surface_->block_begin[body]), at(surface_->block_begin[body + 1])};
+  }
   template <typename OfPhi>
   void for_phi(std::uint32_t point, const OfPhi& of_phi) const {
     if (!is_on_curve(point)) return of_phi(phi_of(point), 1.0);
@@ -121,7 +126,8 @@ class Points {
   void displace_on_curve(std::size_t c, std::span<Vec2> u) const;
 
   const contact::Surface* surface_ = nullptr;
-  std::vector<Body> bodies_;  ///< of every block
+  std::size_t blocks_ = 0;    ///< bodies with vertices; they come first
+  std::vector<Body> bodies_;  ///< of every body
   std::vector<std::size_t> block_of_unknown_;
   std::vector<const double*> phi_of_point_;         ///< of material points
   std::vector<int> block_of_point_;                 ///< likewise
@@ -152,8 +158,8 @@ void Points::add_forces(std::integral_constant<int, size>, std::size_t b, std::s
   const auto add = [&](const double* phi, Pair force) {
     for (int k = 0; k < size; ++k) sums[at(k)] += phi[k] * force;
   };
-  for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v)
-    add(phi_of_vertex(v), load_pair(forces[v]));
+  const auto [begin, end] = vertices_of(b);
+  for (std::size_t v = begin; v < end; ++v) add(phi_of_vertex(v), load_pair(forces[v]));
   for_material_points(b, [&](std::size_t k) { add(phi_of_point_[k], load_pair(forces[material_point(k)])); });
   for (int k = 0; k < size; ++k) store_pair(coefficients + 2 * k, sums[at(k)]);
 }

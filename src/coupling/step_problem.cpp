@@ -83,14 +83,14 @@ void StepProblem::derivative(const Row& row, Vec2 direction, std::vector<double>
 }
 
 void StepProblem::add_gathered_forces(std::span<const Vec2> forces, std::span<double> out) const {
-  team_->for_range(model_->blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+  team_->for_range(model_->bodies(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) points_.add_forces(b, forces, out);
   });
 }
 
 void StepProblem::gradient_with(std::span<const double> d, std::span<const Vec2> forces,
                                 std::span<double> g) const {
-  team_->for_range(model_->blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+  team_->for_range(model_->bodies(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t first = terms_.coefficients(i).first, last = terms_.coefficients(i).second;
       with_known_size(model_->moves(i) ? points_.body(i).size : 0, [&](auto size) {
@@ -116,7 +116,7 @@ void StepProblem::gradient_with(std::span<const double> d, std::span<const Vec2>
 
 void gradient_by_rows(const StepProblem& problem, std::span<const double> d, std::span<double> g) {
   const SpringArray& springs = problem.springs();
-  for (std::size_t b = 0; b < problem.model().blocks.size(); ++b) problem.terms().multiply(b, d, g);
+  for (std::size_t b = 0; b < problem.model().bodies(); ++b) problem.terms().multiply(b, d, g);
   for (std::size_t k = 0; k < g.size(); ++k) g[k] -= problem.terms().right()[k];
   std::vector<double> y(springs.size());
   for (std::size_t c = 0; c < problem.rows().size(); ++c) {

@@ -108,7 +108,7 @@ class StepProblem {
     team_->for_range(at_points.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) at_points[v] = {};
     });
-    owners_.for_rows(model_->blocks.size(), *team_, [&](std::size_t c, RowOwners::Owner owner) {
+    owners_.for_rows(model_->bodies(), *team_, [&](std::size_t c, RowOwners::Owner owner) {
       const Row& row = rows_[c];
       const Vec2 force = force_of(c);
       if (force == Vec2{}) return;

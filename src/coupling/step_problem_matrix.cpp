@@ -88,7 +88,7 @@ void StepProblem::add_springs(std::span<const SpringChange> changes, linalg::Blo
 
 void StepProblem::add_springs(std::span<const double> normal, std::span<const double> shear,
                               linalg::BlockSolver& solver) const {
-  owners_.for_rows(model_->blocks.size(), *team_, [&](std::size_t c, RowOwners::Owner owner) {
+  owners_.for_rows(model_->bodies(), *team_, [&](std::size_t c, RowOwners::Owner owner) {
     if (normal[c] == 0.0 && shear[c] == 0.0) return;
     add_spring(rows_[c], Place(rows_[c]), normal[c], shear[c], owner, solver);
   });

@@ -9,10 +9,10 @@ namespace keyblock::dynamics {
 
 double kinetic_energy(const Model& model, const State& state) {
   double sum = 0.0;
-  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+  for (std::size_t b = 0; b < model.bodies(); ++b) {
     if (!model.moves(b)) continue;
-    // The basis is orthonormal over the block: its mass matrix is the density times the identity.
-    const Block& block = model.blocks[b];
+    // The basis is orthonormal over the block: its mass matrix is the density times the identity. So it is of nodes.
+    const Body& block = model.body(b);
     double squared = 0.0;
     for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
       squared += state.velocity[k] * state.velocity[k];

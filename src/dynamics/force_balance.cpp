@@ -42,7 +42,7 @@ void ForceBalance::find_scales(const Model& model, const StepProblem& problem) {
   scale_.resize(n);
   for (std::size_t b = 0; b < n; ++b) scale_[b] = problem.terms().weight(b);
   if (norm(model.gravity) > 0.0) return;
-  force_.assign(n, 0.0);
+  force_.assign(model.bodies(), 0.0);
   for (std::size_t c = 0; c < problem.springs().size(); ++c) {
     const SpringArray::Force force = problem.springs().force(c);
     for (const int unknown : {problem.rows()[c].unknown_a, problem.rows()[c].unknown_b})
@@ -69,7 +69,7 @@ void ForceBalance::find_rounding(const Model& model, const StepProblem& problem)
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   double extent = 0.0;
   for (const Vec2 x : model.surface.position) extent = std::max({extent, std::abs(x.x), std::abs(x.y)});
-  force_.assign(model.blocks.size(), 0.0);
+  force_.assign(model.bodies(), 0.0);
   for (std::size_t c = 0; c < problem.springs().size(); ++c) {
     if (problem.springs().force(c).is_zero()) continue;
     for (const int unknown : {problem.rows()[c].unknown_a, problem.rows()[c].unknown_b})

@@ -14,10 +14,10 @@ namespace keyblock::dynamics {
 
 namespace {
 
-using Unknowns = std::pair<int, int>;  // Block::unknown of two blocks, the smaller first
+using Unknowns = std::pair<int, int>;  // Body::unknown of two bodies, the smaller first
 
 Unknowns unknowns_of(const Model& model, int a, int b) {
-  return std::minmax(model.blocks[at(a)].unknown, model.blocks[at(b)].unknown);
+  return std::minmax(model.body(at(a)).unknown, model.body(at(b)).unknown);
 }
 
 std::unique_ptr<linalg::BlockSolver> make_direct_solver(const SolverOptions& options) {
@@ -30,8 +30,8 @@ std::unique_ptr<linalg::BlockSolver> make_direct_solver(const SolverOptions& opt
 
 LinearSystems::LinearSystems(const Model& model, ThreadTeam& team)
     : direct_{make_direct_solver(model.solver)}, iterative_{linalg::make_block_conjugate_residual(&team)} {
-  for (const Block& block : model.blocks) {
-    if (block.unknown >= 0) unknown_sizes_.push_back(2 * block.size);
+  for (std::size_t b = 0; b < model.bodies(); ++b) {
+    if (model.body(b).unknown >= 0) unknown_sizes_.push_back(2 * model.body(b).size);
   }
 }
 

@@ -14,9 +14,10 @@ namespace keyblock::dynamics {
 
 namespace {
 
-void move_block(const Attempt& attempt, double spin, const StepRules& rules, std::size_t b, State& state) {
+/// Velocities and accelerations of a body.
+void end_motion(const Attempt& attempt, const StepRules& rules, std::size_t b, State& state) {
   const Drive& drive = attempt.drive;
-  const Block& block = attempt.model.blocks[b];
+  const Body& block = attempt.model.body(b);
   const double* d = &attempt.increment[block.first];
   double* v = &state.velocity[block.first];
   with_known_size(block.size, [&](auto size) {
@@ -32,11 +33,24 @@ void move_block(const Attempt& attempt, double spin, const StepRules& rules, std
       store_first(&state.force[i], end.force, count);
     });
   });
-  block.pose.update(spin, d, &state.position[block.first], v);
+  if (!state.acceleration.empty()) state.acceleration_known[b] = !drive.is_static && !rules.is_in_impact(b);
+}
+
+void move_block(const Attempt& attempt, double spin, const StepRules& rules, std::size_t b, State& state) {
+  end_motion(attempt, rules, b, state);
+  const Block& block = attempt.model.blocks[b];
+  block.pose.update(spin, &attempt.increment[block.first], &state.position[block.first],
+                    &state.velocity[block.first]);
   if (state.acceleration.empty()) return;
   block.pose.rotate(spin, &state.acceleration[block.first]);
   block.pose.rotate(spin, &state.force[block.first]);
-  state.acceleration_known[b] = !drive.is_static && !rules.is_in_impact(b);
+}
+
+void move_line(const Attempt& attempt, const StepRules& rules, std::size_t b, State& state) {
+  end_motion(attempt, rules, b, state);
+  const Body& line = attempt.model.body(b);
+  for (std::size_t k = line.first; k < line.first + 2 * at(line.size); ++k)
+    state.position[k] += attempt.increment[k];
 }
 
 }  // namespace
@@ -44,6 +58,8 @@ void move_block(const Attempt& attempt, double spin, const StepRules& rules, std
 void move_blocks(const Attempt& attempt, std::span<const double> spin, const StepRules& rules, State& state) {
   for_moving_blocks(attempt.model, attempt.team,
                     [&](std::size_t b) { move_block(attempt, spin[b], rules, b, state); });
+  for (std::size_t b = attempt.model.blocks.size(); b < attempt.model.bodies(); ++b)
+    move_line(attempt, rules, b, state);
 }
 
 void place_surface(Model& model, State& state, PredictedMotion& motion, ThreadTeam& team) {

@@ -46,14 +46,14 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile, const std::at
       team_(team),
       profile_(profile),
       motion_(model),
-      rules_(model.blocks.size()),
+      rules_(model.bodies()),
       finder_(model, team),
       systems_(model, team),
       open_close_(stop),
       rotation_(model, finder_.tolerances()),
       intrusions_(sizes_of(model.blocks)),
       increment_(model.coefficients, 0.0),
-      prescribed_(model.motions.empty() ? 0 : model.blocks.size()),
+      prescribed_(model.motions.empty() ? 0 : model.bodies()),
       travel_(model.blocks.size(), 0.0) {}
 
 // ── between steps ────────────────────────────────────────────────────────────────────────────────────────────────────
@@ -63,7 +63,7 @@ void Stepper::start(State& state) {
   if (model_.solver.integrator != TimeIntegration::shi) {
     state.acceleration.assign(model_.coefficients, 0.0);
     state.force.assign(model_.coefficients, 0.0);
-    state.acceleration_known.assign(model_.blocks.size(), 0);
+    state.acceleration_known.assign(model_.bodies(), 0);
   }
   state.couplings.clear();
   for (const auto& coupling : model_.couplings) state.couplings.emplace_back(coupling->memory_size(), 0.0);

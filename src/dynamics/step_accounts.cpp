@@ -11,16 +11,17 @@
 
 namespace keyblock::dynamics {
 
-StepAccounts::BlockWork StepAccounts::work_of(const Attempt& attempt, std::size_t b, double inertia) {
-  BlockWork work;
+/// What inertia loses.
+double StepAccounts::inertia_loss(const Attempt& attempt, std::size_t b, double inertia) {
+  double numerical = 0.0;
   const Drive& drive = attempt.drive;
-  const Block& block = attempt.model.blocks[b];
+  const Body& block = attempt.model.body(b);
   const double* d = &attempt.increment[block.first];
   const double* v = &attempt.state.velocity[block.first];
   with_known_size(block.size, [&](auto size) {
     // What keeps a static step from going on is no inertia: its work is kept by nobody.
     if (drive.is_static) {
-      for (int k = 0; k < 2 * size; ++k) work.numerical += inertia * d[k] * d[k];
+      for (int k = 0; k < 2 * size; ++k) numerical += inertia * d[k] * d[k];
       return;
     }
     // Work of the forces at the end of the step, less what became kinetic energy.
@@ -31,9 +32,18 @@ StepAccounts::BlockWork StepAccounts::work_of(const Attempt& attempt, std::size_
       const Motion end = rule.end(motion_of(attempt.state, block.first + at(k), count), moved, drive.step);
       const Lanes lost =
           density * (end.force * moved - 0.5 * (end.velocity * end.velocity - before * before));
-      for (int i = 0; i < count; ++i) work.numerical += lost[i];
+      for (int i = 0; i < count; ++i) numerical += lost[i];
     });
   });
+  return numerical;
+}
+
+StepAccounts::BlockWork StepAccounts::work_of(const Attempt& attempt, std::size_t b, double inertia) {
+  BlockWork work;
+  const Drive& drive = attempt.drive;
+  const Block& block = attempt.model.blocks[b];
+  const double* d = &attempt.increment[block.first];
+  work.numerical = inertia_loss(attempt, b, inertia);
   work.input = -block.body_force() * dot(drive.ground_acceleration, {d[0], d[1]});
   // Some rules balance forces at a moment within the step. There the force has a share of how it was at the start.
   const double of_start = 1.0 - drive.rule[b].end_share_of_work();
@@ -77,6 +87,8 @@ void StepAccounts::account_for_blocks(const Attempt& attempt, std::span<const do
     ledger.numerical += work.numerical;
     ledger.input += work.input;
   }
+  for (std::size_t b = model.blocks.size(); b < model.bodies(); ++b)
+    ledger.numerical += inertia_loss(attempt, b, terms.inertia(b));
   account_for_loads(attempt, ledger);
 }
 

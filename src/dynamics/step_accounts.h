@@ -18,6 +18,7 @@ class StepAccounts {
   struct BlockWork {
     double numerical = 0.0, input = 0.0;
   };
+  static double inertia_loss(const Attempt& attempt, std::size_t body, double inertia);
   static BlockWork work_of(const Attempt& attempt, std::size_t block, double inertia);
   /// Enters what is known of time alone, and does its work by Integrator::end_share_of_work.
   static void account_for_loads(const Attempt& attempt, EnergyLedger& ledger);

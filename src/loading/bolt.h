@@ -1,5 +1,7 @@
 #pragma once
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,6 +22,8 @@ struct Bolt {
   std::optional<double> yield;           ///< N; empty: it never yields
   std::optional<double> rupture_strain;  ///< plastic strain at which the bar breaks; empty: it never does
   bool is_anchored = false;              ///< held at both ends, and by nothing between
+  bool has_nodes = false;                ///< it is a chain of nodes, whose grout slips along it
+  std::optional<double> node_spacing;    ///< m, between its nodes at the most; empty: by its grout
   bool has_plate = true;                 ///< at the head
   double pretension = 0.0;               ///< N
   double grout_stiffness = 0.0;          ///< N/m per m of bolt
@@ -30,6 +34,7 @@ struct Bolt {
   std::optional<double> dowel_strength;  ///< N; empty: it never yields
 
   [[nodiscard]] double length() const { return norm(toe - head); }
+  [[nodiscard]] double diameter() const { return std::sqrt(4.0 * area / std::numbers::pi); }
   /// EA, N.
   [[nodiscard]] double bar() const { return young * area; }
 };

@@ -18,18 +18,30 @@ namespace keyblock::dynamics {
 
 class Coupling;
 
-/// One block as mechanics sees it; constant during a run.
-struct Block {
+/// What has unknowns of its own: basis functions φ_k with coefficients, so that a point of it is Σ φ_k a_k (MaterialPoint). The basis is scaled
+/// so that the mass matrix is the density times the identity. Constant during a run.
+struct Body {
   // First, and together, what every step reads.
   std::size_t first =
       0;         ///< its coefficients start here in State::position: a_0x, a_0y, a_1x, …; fixed blocks last
   int size = 0;  ///< N, number of basis functions; 2N unknowns
   int unknown = -1;  ///< number among the blocks that move; −1: fixed
   bool fixed = false;
-  double area = 0.0;    ///< m², of the reference polygon
-  Vec2 centroid;        ///< m, likewise
-  double radius = 0.0;  ///< m, from the centroid to the farthest vertex
+  double area = 0.0;  ///< m², in the section: of a block that of the reference polygon
   block::Material material;
+  [[nodiscard]] double mass() const { return material.density * area; }
+};
+
+/// Nodes of a bar that is thin beside the blocks. φ_k is 1/√A_k at node k and 0 at the others, A_k the area of the bar about it per metre of
+/// thickness. Its inertia keeps a step definite; its weight is left to the rock in whose place it is. What holds it are rows of couplings alone.
+struct LineBody : Body {
+  int block = 0;  ///< whose forces measure its balance: the heaviest that it is linked to
+};
+
+/// One block as mechanics sees it: a body with an outline.
+struct Block : Body {
+  Vec2 centroid;        ///< m, of the reference polygon
+  double radius = 0.0;  ///< m, from the centroid to the farthest vertex
   block::Pose pose;
   block::Elasticity elasticity;
   Polygon reference;
@@ -37,7 +49,6 @@ struct Block {
   int edge_order = 1;  ///< contact divides the edges as for a block of this order at least; 1: it does not
   /// Force per unit acceleration on coefficient 0, ρ √A; the others feel no uniform body force.
   [[nodiscard]] double body_force() const { return material.density * std::sqrt(area); }
-  [[nodiscard]] double mass() const { return material.density * area; }
 };
 
 /// A force that follows its block: vector Q of 2N generalized forces times a factor table.
@@ -62,6 +73,7 @@ struct PrescribedMotion {
 /// Everything that does not change during a run, except by excavation and by a program that steers it (simulation::Control).
 struct Model {
   std::vector<Block> blocks;
+  std::vector<LineBody> lines;  ///< bodies by number are the blocks, and then these
   contact::Surface surface;
   std::vector<Vec2> reference;    ///< position of its vertices
   std::vector<int> outline_edge;  ///< of its edges: the edge of a polygon it lies on; all count, ring by ring
@@ -83,16 +95,23 @@ struct Model {
   double block_size = 1.0;    ///< m, √(mean area of the blocks that move)
   SolverOptions solver;
 
-  std::size_t unknowns = 0;      ///< coefficients of the blocks that are not fixed; they come first
-  std::size_t coefficients = 0;  ///< of all blocks
+  std::size_t unknowns =
+      0;  ///< coefficients of the bodies that are not fixed; they come first: of blocks, then of lines
+  std::size_t coefficients = 0;  ///< of all bodies
 
   /// On the forces of a load.
   [[nodiscard]] double load_factor(std::size_t load, double time) const {
     const double factor = loads[load].factor.empty() ? 1.0 : loads[load].factor(time);
     return load_scale.empty() ? factor : factor * load_scale[load];
   }
-  /// Asked for all blocks in every step, of two short arrays.
-  [[nodiscard]] bool moves(std::size_t b) const { return surface.fixed[b] == 0 && surface.present[b] != 0; }
+  [[nodiscard]] std::size_t bodies() const { return blocks.size() + lines.size(); }
+  [[nodiscard]] const Body& body(std::size_t b) const {
+    return b < blocks.size() ? static_cast<const Body&>(blocks[b]) : lines[b - blocks.size()];
+  }
+  /// Asked for all bodies in every step, of two short arrays.
+  [[nodiscard]] bool moves(std::size_t b) const {
+    return b >= blocks.size() || (surface.fixed[b] == 0 && surface.present[b] != 0);
+  }
 };
 
 /// β, s: by which stiffness damps the rock and its joints, in dynamic steps.

@@ -39,12 +39,12 @@ struct State {
   long step = 0;
   double last_step =
       0.0;  ///< s, length of the last dynamic step, which may be one of several halves; 0: none
-  std::vector<double> position;  ///< coefficients a, by Block::first
+  std::vector<double> position;  ///< coefficients a, by Body::first
   std::vector<double> velocity;
   /// Acceleration and sum of forces over mass of every coefficient at the end of the last step, for rules that need them;
   /// valid for blocks whose last step left them known.
   std::vector<double> acceleration, force;
-  std::vector<std::uint8_t> acceleration_known;  ///< per block
+  std::vector<std::uint8_t> acceleration_known;  ///< per body
   std::vector<double> moved;  ///< m, per block: largest displacement of a vertex in the last step
   contact::CandidateList contacts;
   std::vector<std::pair<int, int>> pattern;  ///< pairs of blocks that the matrix has room for

@@ -8,6 +8,7 @@
 #include "contact/candidates.h"
 #include "core/error.h"
 #include "scenario/key_path.h"
+#include "simulation/bolt_nodes.h"
 #include "simulation/build_bolts.h"
 #include "simulation/history_block.h"
 #include "simulation/outline_arc.h"
@@ -123,6 +124,10 @@ class OddBolts {
     if (bolt.has_plate && depth > most_depth_of_a_head * bolt.length())
       keep(deep_, fmt::format("the plate of {} lies {:.3g} m inside of the rock", bolt.name, depth));
     idle_ += pieces.size() == 1 ? 1 : 0;
+    if (const std::size_t nodes =
+            simulation::bolt_nodes(setup, static_cast<std::size_t>(&bolt - setup.bolts.data())).size();
+        nodes > many_nodes)
+      keep(long_, fmt::format("{} has {} nodes, which makes steps slow", bolt.name, nodes));
     for (std::size_t j = 0; j + 1 < pieces.size(); ++j) {
       if (pieces[j + 1].from - pieces[j].to > 1e-3 * bolt.length()) keep(crosses_, bolt.name);
     }
@@ -141,6 +146,8 @@ class OddBolts {
       warnings.push_back(fmt::format("{}: {} crosses an opening; its bar is free there", path, crosses_));
     if (!deep_.empty())
       warnings.push_back(fmt::format("{}: {}; `from` is the head, at the wall", path, deep_));
+    if (!long_.empty())
+      warnings.push_back(fmt::format("{}: {}; a larger node_spacing takes less time", path, long_));
     if (!ends_.empty()) warnings.push_back(fmt::format("{}: {} there", path, ends_));
   }
 
@@ -149,10 +156,11 @@ class OddBolts {
     if (first.empty()) first = std::move(text);
   }
 
+  static constexpr std::size_t many_nodes = 200;
   static constexpr double most_depth_of_a_head = 0.02;  // of the length of a bolt
 
   int count_ = 0, idle_ = 0;
-  std::string crosses_, ends_, deep_;  ///< of the first
+  std::string crosses_, ends_, deep_, long_;  ///< of the first
 };
 
 /// A bar of 25 mm that carries 4 MN is no answer.

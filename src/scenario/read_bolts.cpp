@@ -12,6 +12,8 @@ namespace keyblock::scenario {
 namespace {
 
 constexpr Word<bool> bolt_kinds[] = {{"grouted", false}, {"anchored", true}};
+constexpr Word<bool> bolt_models[] = {{"joints", false}, {"nodes", true}};
+constexpr double most_nodes = 1000.0;  // of a bolt
 
 /// Reads a [[bolt]]; what keys are together is checked at the end.
 class BoltReader {
@@ -178,7 +180,8 @@ class BoltReader {
     if (part && (part->first < 0.0 || part->second > length() * (1.0 + 1e-9)))
       t_.fail("grouted", fmt::format("[{}, {}]", part->first, part->second),
               fmt::format("a part of the bolt, from 0 to {:.6g} m", length()));
-    bolt_.active_length = 2.0 * std::sqrt(4.0 * bolt_.area / std::numbers::pi);
+    read_model();
+    bolt_.active_length = 2.0 * bolt_.diameter();
     t_.number("active_length", bolt_.active_length,
               grouted({.meaning = "Length of bar at a joint that yields, and turns where the joint slips.",
                        .unit = "m",
@@ -187,6 +190,25 @@ class BoltReader {
     if (!bolt_.is_anchored && length() > 0.0 && bolt_.active_length > length())
       t_.fail(spec_.excavation >= 0 ? "length" : "to", fmt::format("a bolt of {:.6g} m", length()),
               fmt::format("a bolt longer than its active length, {:.6g} m", bolt_.active_length));
+  }
+
+  void read_model() {
+    t_.word("model", bolt_.has_nodes, bolt_models,
+            grouted({.meaning = "`joints`: springs at the joints that it crosses. `nodes`: a chain of bars, "
+                                "each node in grout of its "
+                                "own, so that the bolt slips along its length."}));
+    t_.number("node_spacing", bolt_.node_spacing, [&] {
+      Rule rule{.meaning = "Distance of its nodes in one block, at the most.",
+                .unit = "m",
+                .above = 0.0,
+                .fallback = "half of √(EA/grout_stiffness), from a diameter to 0.25 m"};
+      rule.applies = bolt_.has_nodes || any();
+      rule.condition = "model = \"nodes\"";
+      return rule;
+    }());
+    if (bolt_.node_spacing && length() > most_nodes * *bolt_.node_spacing)
+      t_.fail("node_spacing", fmt::format("{} m, for a bolt of {:.6g} m", *bolt_.node_spacing, length()),
+              fmt::format("a thousandth of the bolt at the least, {:.6g} m", length() / most_nodes));
   }
 
   void read_ends() {
@@ -227,6 +249,9 @@ class BoltReader {
     if (bolt_.pretension > 0.0 && !bolt_.has_plate)
       t_.fail("pretension", fmt::format("{} N without a plate", bolt_.pretension),
               "plate = true, which holds the head");
+    if (bolt_.pretension > 0.0 && bolt_.has_nodes)
+      t_.fail("pretension", fmt::format("{} N of a bolt with model = \"nodes\"", bolt_.pretension),
+              "none, or model = \"joints\"");
     if (bolt_.yield && bolt_.pretension >= *bolt_.yield)
       t_.fail("pretension", fmt::format("{} N", bolt_.pretension),
               fmt::format("less than yield, {} N", *bolt_.yield));

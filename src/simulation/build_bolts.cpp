@@ -60,7 +60,7 @@ bool is_gone(const RunSetup& setup, std::size_t block, std::ptrdiff_t installed)
 class BoltBuilder {
  public:
   BoltBuilder(const RunSetup& setup, const dynamics::Model& model, std::size_t k, BoltSprings& to)
-      : bolt_(setup.bolts[k]), model_(model), pieces_(bolt_pieces(setup, k)), to_(to) {}
+      : bolt_(setup.bolts[k]), model_(model), pieces_(bolt_pieces(setup, k)), make_(bolt_, model, to) {}
 
   void build() {
     if (bolt_.is_anchored) return build_anchored();
@@ -78,44 +78,18 @@ class BoltBuilder {
     const std::size_t of_a = pieces_[a].block, of_b = pieces_[b].block;
     return of_a != of_b && !(model_.blocks[of_a].fixed && model_.blocks[of_b].fixed);
   }
-  [[nodiscard]] Vec2 place(double from_head) const { return bolt_.head + from_head * axis_of(bolt_); }
-
-  [[nodiscard]] dynamics::PointSpring spring_of(const char* kind, std::string name) const {
-    dynamics::PointSpring spring;
-    spring.kind = kind;
-    spring.name = std::move(name);
-    spring.staged = bolt_.staged;
-    spring.spacing = bolt_.spacing;
-    return spring;
-  }
-  /// strained: m of the bar, that yields.
-  void set_bar(dynamics::PointSpring& spring, double stiffness, double capacity, double strained) const {
-    spring.stiffness = stiffness / bolt_.spacing;
-    spring.yield = capacity / bolt_.spacing;
-    spring.pretension = bolt_.pretension / bolt_.spacing;
-    // Where the grout gives way first, the bar comes out and does not strain.
-    if (bolt_.rupture_strain && capacity == bolt_.yield) spring.rupture = *bolt_.rupture_strain * strained;
-  }
-  [[nodiscard]] dynamics::MaterialPoint point(const BoltPiece& piece, double from_head) const {
-    return material_point(model_, piece.block, place(from_head));
-  }
   /// Ends, and the stretch that it is drawn along: m from the head, in the blocks of two pieces.
   void add(dynamics::PointSpring spring, const BoltPiece& a, const BoltPiece& b,
            std::pair<double, double> ends, std::pair<double, double> drawn) const {
-    spring.from = place(ends.first);
-    spring.to = place(ends.second);
-    to_.springs.push_back(std::move(spring));
-    to_.points.push_back(point(a, ends.first));
-    to_.points.push_back(point(b, ends.second));
-    to_.drawn.push_back(point(a, drawn.first));
-    to_.drawn.push_back(point(b, drawn.second));
+    make_.add(std::move(spring), ends, {make_.point(a, ends.first), make_.point(b, ends.second)},
+              {make_.point(a, drawn.first), make_.point(b, drawn.second)});
   }
 
   void build_anchored() const {
     if (!moves(0, pieces_.size() - 1)) return;
     const double length = bolt_.length();
-    dynamics::PointSpring spring = spring_of("bolt", bolt_.name);
-    set_bar(spring, bolt_.bar() / length, bolt_.yield.value_or(HUGE_VAL), length);
+    dynamics::PointSpring spring = make_.spring_of("bolt", bolt_.name);
+    make_.set_bar(spring, bolt_.bar() / length, bolt_.yield.value_or(HUGE_VAL), length);
     spring.pulls_only = true;
     add(spring, pieces_.front(), pieces_.back(), {0.0, length}, {0.0, length});
   }
@@ -135,35 +109,23 @@ class BoltBuilder {
     const double half = 0.5 * bolt_.active_length;
     const std::pair drawn{j == 0 ? 0.0 : 0.5 * (a.from + a.to),
                           j + 2 == pieces_.size() ? bolt_.length() : 0.5 * (b.from + b.to)};
-    dynamics::PointSpring bar = spring_of("bolt", name);
-    set_bar(bar, joint.stiffness, joint.capacity, bolt_.active_length);
+    dynamics::PointSpring bar = make_.spring_of("bolt", name);
+    make_.set_bar(bar, joint.stiffness, joint.capacity, bolt_.active_length);
     // A plate holds the head that is pulled into the rock. A bar that is pushed out takes it along.
     bar.push = at_joint(j, false).capacity / bolt_.spacing;
     bar.pulls_only = bar.push == 0.0;
-    const auto number = static_cast<int>(to_.springs.size());
+    const int number = make_.next();
     add(bar, a, b, {std::max(a.to - half, a.from), std::min(b.from + half, b.to)}, drawn);
-    if (bolt_.dowel_stiffness <= 0.0) return;
-    dynamics::PointSpring dowel = spring_of("dowel", name + ".dowel");
-    dowel.stiffness = bolt_.dowel_stiffness / bolt_.spacing;
-    dowel.yield = bolt_.dowel_strength.value_or(HUGE_VAL) / bolt_.spacing;
-    if (bolt_.dowel_strength && bolt_.yield) dowel.yield_along = *bolt_.yield / bolt_.spacing;
-    dowel.across = number;
-    add(dowel, a, b, {a.to, b.from}, drawn);
+    make_.add_dowel(number, name, a, b, drawn);
   }
 
   const Bolt& bolt_;
   const dynamics::Model& model_;
   std::vector<BoltPiece> pieces_;
-  BoltSprings& to_;
+  BoltSpringMaker make_;
 };
 
 }  // namespace
-
-dynamics::MaterialPoint material_point(const dynamics::Model& model, std::size_t block, Vec2 place) {
-  dynamics::MaterialPoint point{static_cast<int>(block), std::vector<double>(at(model.blocks[block].size))};
-  model.blocks[block].basis.evaluate(place, point.phi.data());
-  return point;
-}
 
 std::vector<BoltPiece> bolt_pieces(const RunSetup& setup, std::size_t k) {
   const Bolt& bolt = setup.bolts[k];
@@ -192,7 +154,9 @@ std::vector<BoltPiece> bolt_pieces(const RunSetup& setup, std::size_t k) {
 }
 
 void add_bolts(const RunSetup& setup, const dynamics::Model& model, BoltSprings& to) {
-  for (std::size_t k = 0; k < setup.bolts.size(); ++k) BoltBuilder(setup, model, k, to).build();
+  for (std::size_t k = 0; k < setup.bolts.size(); ++k) {
+    if (!setup.bolts[k].has_nodes) BoltBuilder(setup, model, k, to).build();
+  }
 }
 
 }  // namespace keyblock::simulation

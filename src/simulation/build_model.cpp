@@ -9,9 +9,11 @@
 #include <stdexcept>
 
 #include "core/index.h"
+#include "coupling/facets.h"
 #include "coupling/ground_springs.h"
 #include "coupling/point_springs.h"
 #include "geometry/quadrature.h"
+#include "simulation/bolt_nodes.h"
 #include "simulation/build_bolts.h"
 #include "simulation/build_boundary.h"
 #include "simulation/build_water.h"
@@ -45,17 +47,19 @@ block::Basis make_basis(const Polygon& polygon, const BlockProperties& propertie
 Block make_block(const Polygon& polygon, const BlockProperties& properties, int order, int edge_order,
                  const std::optional<block::InSituStress>& in_situ) {
   const block::Basis basis = make_basis(polygon, properties, order);
-  Block block{.fixed = properties.fixed,
-              .area = area(polygon),
-              .centroid = centroid(polygon),
-              .material = properties.material,
-              .pose = block::Pose(polygon, basis),
-              .elasticity = block::Elasticity(polygon, basis, properties.material, in_situ),
-              .reference = polygon,
-              .basis = basis};
+  Block block{{},
+              centroid(polygon),
+              0.0,
+              block::Pose(polygon, basis),
+              block::Elasticity(polygon, basis, properties.material, in_situ),
+              polygon,
+              basis,
+              edge_order};
+  block.fixed = properties.fixed;
+  block.area = area(polygon);
+  block.material = properties.material;
   for (const Vec2 p : polygon.outer) block.radius = std::max(block.radius, norm(p - block.centroid));
   block.size = basis.size();
-  block.edge_order = edge_order;
   return block;
 }
 
@@ -177,6 +181,7 @@ void add_springs(const RunSetup& setup, Model& model) {
                            .staged = spring.staged});
   }
   add_bolts(setup, model, all);
+  add_bolts_of_nodes(setup, model, all);
   if (!all.springs.empty())
     model.couplings.push_back(std::make_shared<dynamics::PointSprings>(
         std::move(all.springs), std::move(all.points), std::move(all.drawn)));
@@ -204,16 +209,20 @@ void add_prescribed_motions(const RunSetup& setup, Model& model) {
   }
 }
 
-/// Blocks that move first, so that their coefficients are the unknowns.
+/// Blocks that move first, and then lines, so that their coefficients are the unknowns.
 void number_coefficients(Model& model) {
   model.coefficients = 0;
+  const auto place = [&](dynamics::Body& body) {
+    body.first = model.coefficients;
+    model.coefficients += 2 * at(body.size);
+  };
   for (const bool fixed : {false, true}) {
     for (Block& block : model.blocks) {
-      if (block.fixed != fixed) continue;
-      block.first = model.coefficients;
-      model.coefficients += 2 * at(block.size);
+      if (block.fixed == fixed) place(block);
     }
-    if (!fixed) model.unknowns = model.coefficients;
+    if (fixed) continue;
+    for (dynamics::LineBody& line : model.lines) place(line);
+    model.unknowns = model.coefficients;
   }
   int next = 0;
   double moving_area = 0.0;
@@ -222,7 +231,9 @@ void number_coefficients(Model& model) {
     block.unknown = next++;
     moving_area += block.area;
   }
-  if (next > 0) model.block_size = std::sqrt(moving_area / next);
+  const int moving = next;
+  for (dynamics::LineBody& line : model.lines) line.unknown = next++;
+  if (moving > 0) model.block_size = std::sqrt(moving_area / moving);
 }
 
 }  // namespace
@@ -265,6 +276,7 @@ Model build_model(const RunSetup& setup) {
     model.blocks.push_back(make_block(frame_polygon(setup.domain), properties, 1, 1, {}));
     joints.insert(joints.end(), 8, 1);
   }
+  model.lines = bolt_lines(setup);
   number_coefficients(model);
   build_surface(model, joints);
   find_seams(model);
@@ -282,9 +294,9 @@ Model build_model(const RunSetup& setup) {
 
 void change_orders(const RunSetup& setup, Model& model, dynamics::State& state, std::span<const int> orders) {
   std::vector<std::pair<std::size_t, int>> old;  // first coefficient and number of basis functions
+  for (std::size_t b = 0; b < model.bodies(); ++b) old.emplace_back(model.body(b).first, model.body(b).size);
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     Block& block = model.blocks[b];
-    old.emplace_back(block.first, block.size);
     if (block.fixed || orders[b] == block.basis.order()) continue;
     const int unknown = block.unknown;
     block = make_block(block.reference, setup.properties[b], orders[b], block.edge_order, setup.in_situ);
@@ -300,10 +312,10 @@ void change_orders(const RunSetup& setup, Model& model, dynamics::State& state, 
   const auto carry_over = [&](std::vector<double>& values) {
     if (values.empty()) return;
     std::vector<double> now(model.coefficients, 0.0);
-    for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    for (std::size_t b = 0; b < model.bodies(); ++b) {
       const auto from = values.begin() + static_cast<std::ptrdiff_t>(old[b].first);
-      std::copy_n(from, 2 * std::min(old[b].second, model.blocks[b].size),
-                  now.begin() + static_cast<std::ptrdiff_t>(model.blocks[b].first));
+      std::copy_n(from, 2 * std::min(old[b].second, model.body(b).size),
+                  now.begin() + static_cast<std::ptrdiff_t>(model.body(b).first));
     }
     values = std::move(now);
   };
@@ -334,6 +346,9 @@ dynamics::State initial_state(const RunSetup& setup, const Model& model) {
       state.velocity[block.first + 2 * k] = -properties.spin * identity[k].y;
       state.velocity[block.first + 2 * k + 1] = properties.spin * identity[k].x;
     }
+  }
+  for (const auto& coupling : model.couplings) {
+    if (const dynamics::StagedSupports* supports = coupling->staged_supports()) supports->place(model, state);
   }
   return state;
 }

@@ -101,7 +101,7 @@ bool are_contacts(const contact::CandidateList& list, const contact::Surface& su
 
 bool is_pattern(const std::vector<std::pair<int, int>>& pattern, const Model& model) {
   int moving = 0;
-  for (const dynamics::Block& block : model.blocks) moving = std::max(moving, block.unknown + 1);
+  for (std::size_t b = 0; b < model.bodies(); ++b) moving = std::max(moving, model.body(b).unknown + 1);
   return ascends(pattern, std::less<>()) &&
          std::all_of(pattern.begin(), pattern.end(), [&](const auto& pair) {
            return pair.first >= 0 && pair.first < pair.second && pair.second < moving;
@@ -157,8 +157,8 @@ bool has_sizes(const State& s, const Model& model) {
   const std::size_t kept = keeps_accelerations ? model.coefficients : 0;
   return s.position.size() == model.coefficients && s.velocity.size() == model.coefficients &&
          s.acceleration.size() == kept && s.force.size() == kept &&
-         s.acceleration_known.size() == (keeps_accelerations ? blocks : 0) && s.moved.size() == blocks &&
-         are_couplings(s, model);
+         s.acceleration_known.size() == (keeps_accelerations ? model.bodies() : 0) &&
+         s.moved.size() == blocks && are_couplings(s, model);
 }
 
 bool has_numbers(const State& s) {

@@ -26,7 +26,8 @@ void install(const RunSetup& setup, const record::Stage& stage, const dynamics::
   for_supports(model, state,
                [&](const auto& supports, auto& memory) { supports.end_stage(model, state, memory); });
   if (stage.install.empty()) return;
-  const double before = dynamics::support_energy(model, state, state.time);
+  const double before = dynamics::support_energy(model, state, state.time),
+               kinetic = dynamics::kinetic_energy(model, state);
   std::vector<std::uint8_t> now(setup.staged_supports.size(), 0);
   for (std::size_t k = 0; k < now.size(); ++k) {
     if (std::ranges::find(stage.install, setup.staged_supports[k]) != stage.install.end())
@@ -36,9 +37,9 @@ void install(const RunSetup& setup, const record::Stage& stage, const dynamics::
                [&](const auto& supports, auto& memory) { supports.install(model, state, now, memory); });
   // What pretension stores is put in.
   const double stored = dynamics::support_energy(model, state, state.time) - before;
-  if (stored == 0.0) return;
   state.support_energy += stored;
-  state.ledger.input += stored;
+  // So is how bodies move that are put in with them.
+  state.ledger.input += stored + (dynamics::kinetic_energy(model, state) - kinetic);
 }
 
 }  // namespace keyblock::simulation

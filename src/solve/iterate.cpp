@@ -75,7 +75,7 @@ void Iterate::gradient_changed_at(const StepSystem& system, std::span<const std:
 
 std::span<const double> Iterate::ratios(const StepSystem& system) {
   if (std::exchange(knows_ratios_, true)) return ratios_;
-  ratios_.resize(system.problem.model().blocks.size());
+  ratios_.resize(system.problem.model().bodies());
   system.team.for_range(ratios_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) ratios_[b] = system.problem.terms().residual_ratio(b, gradient);
   });

@@ -48,7 +48,7 @@ void LawUpdates::begin() {
 /// N per thickness, per block: what friction holds it with where its contacts slide.
 void LawUpdates::sum_bounds(const StepSystem& system) {
   const SpringArray& springs = system.springs();
-  sliding_bound_.assign(system.problem.model().blocks.size(), 0.0);
+  sliding_bound_.assign(system.problem.model().bodies(), 0.0);
   for (std::size_t c = 0; c < springs.size(); ++c) {
     if (springs.slipped[c] == 0.0) continue;
     sliding_bound_[at(system.contact(c).block_a)] += springs.bound[c];

@@ -49,7 +49,7 @@ void LocalSolve::find_rows_of_blocks(const StepSystem& system) {
     }
   };
   // Counted two places on: in the next one stands where a block begins, until it is filled, and then where the block after it does.
-  first_row_.assign(system.problem.model().blocks.size() + 2, 0);
+  first_row_.assign(system.problem.model().bodies() + 2, 0);
   for_ends([&](std::size_t block, std::size_t /*row*/) { ++first_row_[block + 2]; });
   std::partial_sum(first_row_.begin(), first_row_.end(), first_row_.begin());
   rows_of_block_.resize(first_row_.back());
@@ -61,7 +61,7 @@ void LocalSolve::find_rows_of_blocks(const StepSystem& system) {
 /// What the next solution reaches. A row of two blocks that move comes once, with the first of them.
 void LocalSolve::take_reach(const StepSystem& system) {
   find_rows_of_blocks(system);
-  is_taken_.assign(system.problem.model().blocks.size(), 0);
+  is_taken_.assign(system.problem.model().bodies(), 0);
   rows_.clear();
   for (const std::size_t block : std::span(reach_.blocks).first(reach_.moved)) {
     for (std::size_t i = first_row_[block]; i < first_row_[block + 1]; ++i) {

@@ -16,7 +16,7 @@ void StepMatrix::assemble(const StepSystem& system) {
   normal_stiffness_.resize(n);
   shear_stiffness_.resize(n);
   places_.resize(n);
-  held_.assign(system.problem.model().blocks.size(), 0);
+  held_.assign(system.problem.model().bodies(), 0);
   free_.clear();
   branches_ = springs.branch;
   system.team.for_range(n, contacts_worth_threads, [&](std::size_t begin, std::size_t end) {

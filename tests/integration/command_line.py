@@ -9,7 +9,7 @@ import unittest
 
 from program import PROGRAM, ROOT, Scenario
 
-COMMANDS = ("run", "check", "cut", "report", "export", "motion", "study")
+COMMANDS = ("run", "check", "cut", "report", "export", "motion", "study", "bolt")
 
 
 class Help(Scenario):
@@ -251,6 +251,35 @@ class Motion(Scenario):
         error = self.keyblock("motion", "gone.smc", "incline.toml", expect=1).stderr
         self.assertIn("gone.smc", error)
         self.assertIn("incline.toml", error)
+
+
+class Bolt(Scenario):
+    def test_pulls_and_shears_beside_what_was_measured(self):
+        tunnel = str(ROOT / "examples/12-bolted-tunnel.toml")
+        for model in ("joints", "nodes"):
+            given = ("bolt", tunnel, "crown", "--set", f'bolt.crown.model="{model}"', "--way", "5", "-o", "out")
+            self.assertRegex(self.keyblock(*given).stdout, r"pull +245 kN at the most")
+            curve = (self.folder / "out/pull.csv").read_text()
+            self.assertEqual(curve.splitlines()[:2], ["displacement_mm,force_kn", "0,0"])
+            # Its own curve as a measured one.
+            self.write("test.csv", curve)
+            text = self.keyblock(*given, "--pull", "test.csv").stdout
+            self.assertRegex(text, r"the program is \S+e-\d+ kN off|the program is 0 kN off")
+            self.assertIn("measured", (self.folder / "out/bolt.svg").read_text())
+            self.assertGreater(max(float(row.split(",")[1]) for row in
+                                   (self.folder / "out/shear.csv").read_text().splitlines()[1:]), 100.0)
+
+    def test_says_what_is_wrong(self):
+        tunnel = str(ROOT / "examples/12-bolted-tunnel.toml")
+        self.assertIn("crown", self.keyblock("bolt", tunnel, "floor", "-o", "out", expect=1).stderr)
+        self.assertIn("[[bolt]]", self.keyblock("bolt", "incline.toml", "floor", "-o", "out", expect=1).stderr)
+        self.assertIn("from its head", self.keyblock("bolt", tunnel, "crown", "--at", "9", "-o", "out", expect=1).stderr)
+        self.write("test.csv", "mm,kN\n0,0\n2,10\n1,20\n")
+        error = self.keyblock("bolt", tunnel, "crown", "--pull", "test.csv", "-o", "out", expect=1).stderr
+        self.assertIn("test.csv:4", error)
+        self.write("test.csv", "mm,kN,s\n0,0,0\n2,10,1\n")
+        error = self.keyblock("bolt", tunnel, "crown", "--pull", "test.csv", "-o", "out", expect=1).stderr
+        self.assertIn("two columns", error)
 
 
 class Results(Scenario):

@@ -34,7 +34,7 @@ KEYS = {
     "src/rockmass/random_strength.h",
     "src/rockmass/random_strength.cpp",
     "src/simulation/setup.h",
-    "src/simulation/build_bolts.h",
+    "src/simulation/bolt_springs.h",
     "src/loading/load.h",
 }
 
