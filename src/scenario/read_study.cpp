@@ -145,6 +145,17 @@ void read_marginal(TableReader& t, StudySpec& study) {
           });
 }
 
+void read_control(TableReader& t, StudySpec& study) {
+  t.boolean(
+      "control", study.control,
+      {.meaning = "Runs each rock mass once more without the shaking that comes after `since`. What comes "
+                  "down in that run, gravity brought "
+                  "down, and it is taken off what counts as brought down by the shaking."});
+  if (study.control && study.since == from_the_start)
+    t.fail("control", "true with since = \"start\", which counts all that gravity brought down",
+           "one of the two");
+}
+
 void read_keys_of_study(TableReader& t, StudySpec& study) {
   const bool until = t.find("until") != nullptr;
   Rule rule{.meaning = "Number of realizations of the joint sets.", .at_least = 1.0, .applies = !until};
@@ -180,6 +191,7 @@ void read_keys_of_study(TableReader& t, StudySpec& study) {
           [&](TableReader& u) { read_until(u, study.until.emplace()); });
   read_levels(t, study);
   read_marginal(t, study);
+  read_control(t, study);
   t.table("map", {.meaning = "The raster on which is counted how often rock falls."}, [&](TableReader& m) {
     m.number("cell", study.map_cell,
              {.meaning = "Width of a cell.",

@@ -51,6 +51,7 @@ struct StudySpec {
   std::optional<UntilSpec> until;
   std::vector<LevelSpec> levels;  ///< empty: defaults, see study::damage_levels
   std::optional<MarginalSpec> marginal;
+  bool control = false;            ///< a run without shaking for each rock mass
   std::optional<double> map_cell;  ///< m
   Keep keep = Keep::report;
 };

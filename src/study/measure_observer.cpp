@@ -91,13 +91,18 @@ void MeasureObserver::contacts(const record::ContactFrame& frame) {
   if (mechanism_.is_known()) mechanism_.contacts = frame.contacts;
 }
 
+std::string MeasureObserver::record_of(const record::Stage& stage) const {
+  const bool shakes = stage.kind == record::StageKind::shake && stage.motion >= 0;
+  return shakes && at(stage.motion) < records_.size() ? records_[at(stage.motion)] : "";
+}
+
 void MeasureObserver::stage_end(int index, const record::StageRecord& stage) {
   if (stage.moving.empty()) mechanism_ = {};
   if (stage.interrupted) return;
   result_.stages.push_back({stage.stage.name, stage.stage.kind, stage.pga, stage.pgv, stage.arias,
                             stage.damage,
                             record::standing_of(stage, loosened_, !model_.excavation_names.empty()),
-                            stage.movers, name_of(stage.movers.heaviest)});
+                            stage.movers, name_of(stage.movers.heaviest), record_of(stage.stage)});
   fallen_ = stage.fallen;
   std::vector<int> fell(blocks_, -1);
   for (const record::FallenBlock& block : fallen_)

@@ -1,5 +1,7 @@
 #pragma once
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "record/record.h"
@@ -12,9 +14,10 @@ namespace keyblock::study {
 class MeasureObserver : public record::RunObserver {
  public:
   /// Fills `result` (except for key, realization, values, variant and error), which must outlive the run. The first `blocks`
-  /// blocks of the model are the rock; a frame comes after them. loosened: m, of DamageLimits.
-  MeasureObserver(RunResult& result, const MapGrid& grid, std::size_t blocks, double loosened)
-      : result_(result), grid_(grid), blocks_(blocks), loosened_(loosened) {}
+  /// blocks of the model are the rock; a frame comes after them. loosened: m, of DamageLimits. records: names of the ground motions.
+  MeasureObserver(RunResult& result, const MapGrid& grid, std::size_t blocks, double loosened,
+                  std::vector<std::string> records = {})
+      : result_(result), grid_(grid), blocks_(blocks), loosened_(loosened), records_(std::move(records)) {}
 
   void begin(const record::ModelRecord& model) override;
   void stage_begin(int index, const record::StageRecord& stage) override;
@@ -30,11 +33,13 @@ class MeasureObserver : public record::RunObserver {
 
  private:
   [[nodiscard]] std::string name_of(int block) const;
+  [[nodiscard]] std::string record_of(const record::Stage& stage) const;
 
   RunResult& result_;
   MapGrid grid_;
   std::size_t blocks_;
   double loosened_;
+  std::vector<std::string> records_;
   record::ModelRecord model_;
   record::Frame last_;
   Mechanism mechanism_;

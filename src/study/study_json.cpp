@@ -164,9 +164,23 @@ ordered_json fragility_json(const StudyData& study, const Summary& summary, cons
           {"realizations", curve.clusters},
           {"without_shaking", number(curve.at_rest.runs)},
           {"exceeded_without_shaking", number(curve.at_rest.exceeded)},
-          {"resamples_fitted", curve.resamples_fitted},
+          {"records", curve.records},
+          {"which_records", why.empty() ? ordered_json(for_which_records(curve)) : ordered_json()},
+          {"sigma",
+           {{"rock", estimate(shown(curve.split.rock))},
+            {"record", estimate(shown(curve.split.record))},
+            {"rest", estimate(shown(curve.split.rest))}}},
+          {"pairs", curve.pairs},
+          {"not_monotone", curve.not_monotone},
           {"points", points},
           {"curve", band}};
+}
+
+/// Also why a run that is done is not counted.
+std::string error_of(const StudyData& study, const RunResult& run) {
+  const bool lacks_control =
+      study.control && run.error.empty() && damage_between(run, study.since, study.stage).has_value();
+  return lacks_control ? "its control run, without shaking, failed or is missing" : run.error;
 }
 
 ordered_json failed_json(const StudyData& study) {
@@ -177,7 +191,7 @@ ordered_json failed_json(const StudyData& study) {
                     {"realization", run.realization},
                     {"values", texts(run.values)},
                     {"variant", run.variant},
-                    {"error", run.error}});
+                    {"error", error_of(study, run)}});
   }
   return rows;
 }
@@ -246,6 +260,11 @@ ordered_json head(const StudyData& study, const Summary& summary) {
                          {"minimum", study.precision->minimum},
                          {"reached", study.precision->reached}};
   }
+  json["control"] = nullptr;
+  if (study.control)
+    json["control"] = {{"realizations", summary.control.realizations},
+                       {"still_falling", summary.control.falling},
+                       {"threshold_m2", number(summary.control.threshold)}};
   json["marginal"] = nullptr;
   if (study.marginal)
     json["marginal"] = {{"friction_degrees", study.marginal->friction},

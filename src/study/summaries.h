@@ -23,6 +23,7 @@ inline constexpr double smallest_marginal_area = 0.01;
 struct Measured {
   std::optional<record::Damage> damage;  ///< none where the run failed or did not get there
   std::array<double, 3> intensity{};     ///< as intensities(): largest over the stages between
+  std::string record;                    ///< of the stages between that shake, by name
 };
 Measured measured(const StudyData& study, const RunResult& run);
 
@@ -82,15 +83,23 @@ struct FragilityGroup {
   statistics::FragilityCurve curve;
 };
 
+/// What came down in the control runs between the ends of StudyData::since and StudyData::stage, where nothing shook.
+struct ControlSummary {
+  std::size_t realizations = 0;  ///< with a control run; 0 in a study without any
+  std::size_t falling = 0;       ///< of these, where more than `threshold` fell: gravity was not done
+  double threshold = statistics::not_a_number;  ///< m²
+};
+
 struct Summary {
   std::vector<Combination> combinations;  ///< in the order of the axes, the last one running fastest
   /// By axis: all its keys are of stages or motions, and end in .scale or .motion or change an intensity. An axis that
   /// changes the rock as well is none.
   std::vector<bool> shaking_axis;
   std::vector<FragilityGroup>
-      fragility;                     ///< by level, intensity, group; empty where no axis changes the shaking
-  std::vector<Marginal> marginal;    ///< by run; that of variants is unknown
-  std::vector<int> combination_of;   ///< by run; variants have that of their run
+      fragility;                    ///< by level, intensity, group; empty where no axis changes the shaking
+  std::vector<Marginal> marginal;   ///< by run; that of variants is unknown
+  std::vector<int> combination_of;  ///< by run; variants have that of their run, control runs −1
+  ControlSummary control;
   std::size_t done = 0, failed = 0;  ///< all runs, variants too
 };
 

@@ -52,7 +52,7 @@ scenario::Scenario scenario_of(const Plan& plan, const PlannedRun& run) {
       scenario::parse_scenario_text(plan.text, plan.scenario, overrides, scenario::StudyTable::leave_out);
   for (const fs::path& path : scenario::input_paths(scenario)) check_file(plan, path);
   scenario.strata = plan.strata;
-  apply_variant(scenario, run.variant, plan.marginal.value_or(MarginalCheck{}));
+  apply_variant(scenario, run.variant, variant_terms(plan));
   if (!run.variant.empty()) scenario.text += fmt::format("# variant {}\n", run.variant);
   return scenario;
 }
@@ -63,7 +63,10 @@ class Task {
       : plan_(plan), folder_(run_folder(directory, run.key)), result_(empty_result(run)) {}
 
   TaskOutcome run(const simulation::RunSetup& setup, const TaskOptions& options) {
-    MeasureObserver measures(result_, plan_.grid, setup.system.blocks.size(), setup.damage.loosened_distance);
+    std::vector<std::string> records;
+    for (const loading::GroundMotion& motion : setup.motions) records.push_back(motion.name());
+    MeasureObserver measures(result_, plan_.grid, setup.system.blocks.size(), setup.damage.loosened_distance,
+                             std::move(records));
     std::unique_ptr<results::ResultWriter> writer;
     std::unique_ptr<MemoryRecorder> memory;
     std::vector<record::RunObserver*> observers{&measures};

@@ -111,6 +111,23 @@ class Runs(Study):
         for words in (("check", "two.toml"), ("study", "run", "two.toml", "-o", "out")):
             self.assertIn("two.toml: warning: study.realizations = 2: nothing is random", self.keyblock(*words).stderr)
 
+    def test_control_runs_take_off_what_gravity_brings_down(self):
+        self.write("control.toml", GALLERY + '[study]\ncontrol = true\nkeep = "measures"\n' + SCALES)
+        self.run_study("control.toml")
+        control, *shaken = [self.result(key) for key in self.keys()]
+        self.assertEqual((control["variant"], control["values"]), ("unshaken", ["0"]))
+        self.assertEqual(control["stages"][2]["pga_m_s2"], 0.0)
+        area = lambda run: run["stages"][3]["damage"]["fallen_area_m2"] - run["stages"][1]["damage"]["fallen_area_m2"]
+        study = json.loads((self.out / "study.json").read_text())
+        for run, combination in zip(shaken, study["combinations"]):
+            self.assertAlmostEqual(combination["measures"]["fallen_area_m2"]["mean"]["value"], area(run) - area(control), places=5)
+        self.assertEqual(study["control"]["realizations"], 1)
+        self.assertEqual([row["variant"] for row in self.rows()], ["", "", "unshaken"])
+        before = self.done()
+        self.run_study("control.toml", "--resume", "--set", "study.realizations=2")
+        self.assertEqual({key: time for key, time in self.done().items() if key in before}, before)
+        self.assertEqual(len(self.done()), 6)
+
     def test_variants_of_the_check_for_marginal_results(self):
         self.write("marginal.toml", GALLERY + '[study]\nkeep = "measures"\nsince = "start"\nmarginal = {}\n')
         self.run_study("marginal.toml")
