@@ -78,6 +78,7 @@ Observations observed(const StudyData& study, const Summary& summary, const Grou
       const RunResult& run = study.runs[r];
       const Measured m = measured(study, run);
       const double x = m.intensity[intensity];
+      if (std::isnan(x)) continue;
       add(x, *m.damage, run.realization, m.record);
       if (!all_counts || !seen.insert(run.realization).second || x == 0.0) continue;
       if (const auto before = damage_between(run, "", study.before))
@@ -102,7 +103,7 @@ std::vector<FragilityGroup> fragility_groups(const StudyData& study, const Summa
   std::vector<Group> groups = grouped(summary);
   for (std::size_t l = 0; l < study.levels.size(); ++l) {
     if (!find_measure(study.levels[l].measure)) continue;
-    for (std::size_t i = 0; i < intensities().size(); ++i) {
+    for (const std::size_t i : known_intensities(study)) {
       for (Group& group : groups) {
         std::stable_sort(
             group.combinations.begin(), group.combinations.end(),

@@ -24,10 +24,14 @@ double difference(double a, double b) {
   return std::abs(d) < largest_rounded ? std::round(d * difference_grain) / difference_grain + 0.0 : d;
 }
 
-const std::array<Intensity, 3> all_intensities{
+const std::array<Intensity, intensity_count> all_intensities{
     {{"pga_m_s2", "PGA", "m/s²", &StageMeasures::pga, 1, "PGA", "section"},
      {"pgv_m_s", "PGV", "m/s", &StageMeasures::pgv, 1, "PGV", "section"},
-     {"arias_m_s", "Arias intensity", "m/s", &StageMeasures::arias, 2, "IA", "section"}}};
+     {"arias_m_s", "Arias intensity", "m/s", &StageMeasures::arias, 2, "IA", "section"},
+     {"pga_rotd50_m_s2", "PGA (RotD50)", "m/s²", &StageMeasures::pga_rotd50, 1, "PGA", "rotd50"},
+     {"pgv_rotd50_m_s", "PGV (RotD50)", "m/s", &StageMeasures::pgv_rotd50, 1, "PGV", "rotd50"},
+     {"sa_03_rotd50_m_s2", "SA(0.3 s) (RotD50)", "m/s²", &StageMeasures::sa_03_rotd50, 1, "SA(0.3)", "rotd50"},
+     {"sa_10_rotd50_m_s2", "SA(1 s) (RotD50)", "m/s²", &StageMeasures::sa_10_rotd50, 1, "SA(1.0)", "rotd50"}}};
 
 }  // namespace
 

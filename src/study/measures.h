@@ -36,6 +36,8 @@ std::optional<record::Damage> damage_between(const RunResult& run, std::string_v
 std::optional<record::Damage> damage_beyond(const RunResult& run, const RunResult& control,
                                             std::string_view since, std::string_view stage);
 
+inline constexpr std::size_t intensity_count = 7;
+
 /// Kinds of intensity of shaking.
 struct Intensity {
   std::string name;   ///< "pga_m_s2"

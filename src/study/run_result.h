@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,6 +32,11 @@ struct StageMeasures {
   record::Movers movers = {};
   std::string heaviest = {};  ///< name of the heaviest of them; empty for cut blocks
   std::string record = {};    ///< name of the ground motion; empty where nothing shakes
+  /// RotD50 of the record, scaled (loading/intensity_measures.h); m/s², m/s. No numbers where that is not known.
+  double pga_rotd50 = std::numeric_limits<double>::quiet_NaN();
+  double pgv_rotd50 = std::numeric_limits<double>::quiet_NaN();
+  double sa_03_rotd50 = std::numeric_limits<double>::quiet_NaN();
+  double sa_10_rotd50 = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct FallenBlock {

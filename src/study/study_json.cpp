@@ -119,7 +119,7 @@ ordered_json hangs_on_json(const Combination& c) {
 
 ordered_json combination_json(const StudyData& study, const Combination& c) {
   ordered_json json{{"values", texts(c.values)}, {"n", c.runs.size()}, {"failed", c.failed}};
-  for (std::size_t k = 0; k < intensities().size(); ++k) json[intensities()[k].name] = number(c.intensity[k]);
+  for (const std::size_t k : known_intensities(study)) json[intensities()[k].name] = number(c.intensity[k]);
   json["worst"] = key_of(study, c.worst);
   json["median"] = key_of(study, c.median);
   json["checked"] = c.checked;
@@ -224,8 +224,10 @@ ordered_json head(const StudyData& study, const Summary& summary) {
     levels.push_back(
         {{"name", level.name}, {"measure", level.measure}, {"threshold", number(level.threshold)}});
   ordered_json kinds = ordered_json::array();
-  for (const Intensity& i : intensities())
-    kinds.push_back({{"name", i.name}, {"title", i.title}, {"unit", i.unit}});
+  for (const std::size_t k : known_intensities(study)) {
+    const Intensity& i = intensities()[k];
+    kinds.push_back({{"name", i.name}, {"title", i.title}, {"unit", i.unit}, {"kind", i.kind}, {"component", i.component}});
+  }
   int realizations = 0;
   {
     std::vector<int> all;

@@ -219,7 +219,7 @@ std::vector<bool> shaking_axes(const StudyData& study, const std::vector<Combina
     bool shaking = std::any_of(keys.begin(), keys.end(), [](const std::string& key) {
       return ends_with(key, ".scale") || ends_with(key, ".motion");
     });
-    std::map<std::vector<std::string>, std::array<double, 3>> seen;
+    std::map<std::vector<std::string>, std::array<double, intensity_count>> seen;
     for (const Combination& c : combinations) {
       if (shaking || c.runs.empty() || a >= c.values.size()) continue;
       std::vector<std::string> others = c.values;
@@ -245,7 +245,28 @@ std::optional<record::Damage> counted_damage(const StudyData& study, const RunRe
   return damage_beyond(run, study.runs[static_cast<std::size_t>(control)], study.since, study.stage);
 }
 
+/// To the larger of both. What a stage that shakes does not know, nobody knows of the run.
+void raise(double& largest, double x, record::StageKind kind) {
+  if (!std::isnan(x))
+    largest = std::max(x, largest);
+  else if (kind == record::StageKind::shake)
+    largest = statistics::not_a_number;
+}
+
 }  // namespace
+
+std::vector<std::size_t> known_intensities(const StudyData& study) {
+  std::vector<std::size_t> known;
+  for (std::size_t k = 0; k < intensities().size(); ++k) {
+    const bool is_known = std::ranges::any_of(study.runs, [&](const RunResult& run) {
+      return std::ranges::any_of(
+          run.stages, [&](const StageMeasures& stage) { return !std::isnan(stage.*(intensities()[k].of)); });
+    });
+    // Those in the section are known of any motion.
+    if (is_known || intensities()[k].component == "section") known.push_back(k);
+  }
+  return known;
+}
 
 Measured measured(const StudyData& study, const RunResult& run) {
   Measured result;
@@ -253,7 +274,7 @@ Measured measured(const StudyData& study, const RunResult& run) {
   if (!result.damage) return result;
   for (const StageMeasures& stage : run.stages) {
     for (std::size_t k = 0; k < result.intensity.size(); ++k)
-      result.intensity[k] = std::max(result.intensity[k], stage.*(intensities()[k].of));
+      raise(result.intensity[k], stage.*(intensities()[k].of), stage.kind);
     if (!stage.record.empty()) result.record += (result.record.empty() ? "" : ", ") + stage.record;
     if (stage.name == study.since) {
       result.intensity = {};

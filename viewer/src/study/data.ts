@@ -72,7 +72,14 @@ export interface Combination {
   map: { n: number; fallen: number[]; fallen_or_loosened: number[] };
 }
 
-export type IntensityName = "pga_m_s2" | "pgv_m_s" | "arias_m_s";
+export type IntensityName =
+  | "pga_m_s2"
+  | "pgv_m_s"
+  | "arias_m_s"
+  | "pga_rotd50_m_s2"
+  | "pgv_rotd50_m_s"
+  | "sa_03_rotd50_m_s2"
+  | "sa_10_rotd50_m_s2";
 
 export interface Fragility {
   level: string;
