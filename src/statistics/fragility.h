@@ -78,7 +78,7 @@ struct FragilityLimits {
 };
 
 /// What of β² is from rock to rock, from record to record, and of the single pair (split.h). Each may come out below zero, where it
-/// is small: it is 0 then, with its interval.
+/// is small: it is 0 then, with its interval. Intervals are by rock masses and records alone, on the safe side.
 struct Split {
   Estimate rock, record, rest;  ///< σ
 };

@@ -50,7 +50,7 @@ Split split_of(const FragilityTable& table, const FragilityCurve& curve, const S
     return {};
   const SharedCorrelations rho = shared_correlations(pairs, thresholds_of(table, curve.fit));
   if (std::isnan(rho.rock) || std::isnan(rho.record)) return {};
-  std::vector<Variances> rocks, records, of_pairs;
+  std::vector<Variances> rocks, records;
   std::size_t k = 0;
   for (const auto& [id, parts] : table.clusters)
     rocks.push_back(variances_without(table, pairs, curve.refits.rocks[k++], rho,
@@ -59,11 +59,6 @@ Split split_of(const FragilityTable& table, const FragilityCurve& curve, const S
   for (const auto& [id, parts] : table.records)
     records.push_back(variances_without(table, pairs, curve.refits.records[k++], rho,
                                         [&](const Pair& pair) { return pair.record == id; }));
-  k = 0;
-  for (const auto& [id, parts] : table.pairs)
-    of_pairs.push_back(variances_without(table, pairs, curve.refits.pairs[k++], rho, [&](const Pair& pair) {
-      return pair.rock == id.first && pair.record == id.second;
-    }));
   const Variances whole = variances_of(curve.fit, rho);
   const auto estimated = [&](double Variances::*part) {
     const auto each = [&](const std::vector<Variances>& all) {
@@ -71,7 +66,7 @@ Split split_of(const FragilityTable& table, const FragilityCurve& curve, const S
       for (const Variances& v : all) values.push_back(v.*part);
       return values;
     };
-    return deviation(whole.*part, {each(rocks), each(records), each(of_pairs)}, confidence);
+    return deviation(whole.*part, {each(rocks), each(records), {}}, confidence);
   };
   return {estimated(&Variances::rock), estimated(&Variances::record), estimated(&Variances::rest)};
 }

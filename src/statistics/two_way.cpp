@@ -23,7 +23,7 @@ TwoWayVariance two_way_variance(double whole, const LeftOut& without) {
   if (without.rocks.size() > 1) v.total = v.rock = part_of(whole, without.rocks);
   if (without.records.size() > 1) v.total = v.record = part_of(whole, without.records);
   if (std::isnan(v.rock) || std::isnan(v.record)) return v;
-  v.pair = part_of(whole, without.pairs);
+  v.pair = without.pairs.empty() ? 0.0 : part_of(whole, without.pairs);
   v.total = std::max({v.rock + v.record - v.pair, v.rock, v.record});
   return v;
 }

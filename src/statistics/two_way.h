@@ -15,7 +15,7 @@
 /// Where there is one record, V = V_rock, and the interval is for this record alone; one rock mass likewise.
 namespace keyblock::statistics {
 
-/// Estimates without a rock mass, a record, a pair.
+/// Estimates without a rock mass, a record, a pair. No pairs: V_pair is taken for 0, which is on the safe side.
 struct LeftOut {
   std::vector<double> rocks, records, pairs;
 };

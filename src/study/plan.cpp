@@ -17,6 +17,7 @@
 #include "scenario/parse.h"
 #include "scenario/sections.h"
 #include "scenario/shaking_checks.h"
+#include "study/rotation.h"
 #include "study/variant.h"
 
 namespace keyblock::study {
@@ -78,7 +79,8 @@ void read_all(const Scenario& base, Plan& plan, std::vector<std::string>* warnin
 
 void check_count(const Plan& plan, const Scenario& scenario, std::size_t variants) {
   double count = static_cast<double>(plan.realizations) * static_cast<double>(variants);
-  for (const scenario::VarySpec& axis : plan.axes) count *= static_cast<double>(axis.values.size());
+  for (const scenario::VarySpec& axis : plan.axes)
+    count *= axis.per_realization ? *axis.per_realization : static_cast<double>(axis.values.size());
   if (count <= most_runs) return;
   throw InputError(Diagnostic{scenario.where("study"), "study", fmt::format("{:.3g} runs", count),
                               fmt::format("at most {:.0e}", most_runs), ""});
@@ -151,10 +153,28 @@ class Realization {
   std::set<std::string> known_;  ///< keys of control runs
 };
 
+/// Whether the realization has this run: its values are those of its turn.
+bool is_its_turn(const Plan& plan, const PlannedRun& run, int realization) {
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
+    const scenario::VarySpec& axis = plan.axes[a];
+    if (!axis.per_realization) continue;
+    const auto place =
+        static_cast<std::size_t>(std::ranges::find(axis.values, run.values[a]) - axis.values.begin());
+    const auto count = static_cast<std::size_t>(*axis.per_realization);
+    if (!takes_value(static_cast<std::size_t>(realization), place, axis.values.size(), count)) return false;
+  }
+  return true;
+}
+
 void list_runs(Plan& plan, const Scenario& scenario, const std::vector<std::string>& variants) {
-  const std::vector<PlannedRun> one_realization = Realization(plan, scenario).runs(variants);
+  const std::vector<PlannedRun> all = Realization(plan, scenario).runs(variants);
   for (int realization = 0; realization < plan.realizations; ++realization) {
-    for (const PlannedRun& run : one_realization) {
+    std::set<std::string_view> controls;
+    for (const PlannedRun& run : all)
+      if (!run.control.empty() && is_its_turn(plan, run, realization)) controls.insert(run.control);
+    for (const PlannedRun& run : all) {
+      const bool is_control = run.variant == unshaken_variant;
+      if (is_control ? !controls.contains(run.key) : !is_its_turn(plan, run, realization)) continue;
       plan.runs.push_back(run);
       plan.runs.back().realization = realization;
       plan.runs.back().key = key_of(realization, run.key);

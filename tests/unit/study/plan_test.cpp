@@ -182,6 +182,25 @@ TEST(Plan, EachRockMassHasOneControlRun) {
   EXPECT_EQ(more.runs[0].key, plan.runs[0].key);
 }
 
+// Two of eight values each, in rotation: 01 12 23 34 45 56 67 70, then with another distance.
+TEST(Plan, RealizationsTakeValuesInRotation) {
+  const std::vector<std::string> asked{"study.realizations=10", "study.control=true",
+                                       "study.vary=[{key='stage.shaken.scale', values=[0.0, 0.1, 0.2, 0.3, "
+                                       "0.4, 0.5, 0.6, 0.7], per_realization=2}]"};
+  const Plan plan = plan_of(asked);
+  std::vector<std::string> taken(10);
+  for (const PlannedRun& run : plan.runs)
+    if (run.variant.empty()) taken[static_cast<std::size_t>(run.realization)] += run.values[0][0].substr(2);
+  EXPECT_THAT(taken, ElementsAre("01", "12", "23", "34", "45", "56", "67", "07", "02", "13"));
+  EXPECT_EQ(plan.runs.size(), 30U);
+  std::vector<std::string> fewer = asked;
+  fewer[0] = "study.realizations=4";
+  const auto few = keys_of(plan_of(fewer)), many = keys_of(plan);
+  EXPECT_EQ(std::vector(many.begin(), many.begin() + static_cast<std::ptrdiff_t>(few.size())), few);
+  EXPECT_THROW(plan_of({"study.vary=[{key='stage.shaken.scale', values=[1.0, 2.0], per_realization=3}]"}),
+               InputError);
+}
+
 TEST(Plan, RefusesControlRunsThatTellNothing) {
   EXPECT_THROW(plan_of({"study.control=true", "study.since='start'"}), InputError);
   EXPECT_THROW(plan_of({"study.control=true", "study.since='shaken'"}), InputError);

@@ -123,7 +123,15 @@ export class FragilityView {
     });
     return tableBox(
       `Median θ and logarithmic standard deviation β of “${this.level}”, with intervals over realizations and records`,
-      [[column("Curve", "", true), column("Realizations"), column("θ", unit), column("β"), column("Intervals", "", true)]],
+      [
+        [
+          column("Curve", "", true),
+          column("Realizations"),
+          column("θ", unit),
+          column("β"),
+          column("Intervals", "", true),
+        ],
+      ],
       rows,
       "narrow",
     );

@@ -10,7 +10,13 @@ export function studyFindings(study: Study): Finding[] {
   const found = headlineFindings(study);
   if (found.length === 0)
     return [{ grade: "attention", text: "No run has ended: there is nothing to tell yet." }, ...gaps(study)];
-  return [...found, ...controlFindings(study), ...precisionFindings(study), ...gaps(study), ...marginalFindings(study)];
+  return [
+    ...found,
+    ...controlFindings(study),
+    ...precisionFindings(study),
+    ...gaps(study),
+    ...marginalFindings(study),
+  ];
 }
 
 /** The end of the running mean with its band: what the precision is measured by. */
@@ -142,7 +148,12 @@ function controlFindings(study: Study): Finding[] {
   if (!control || control.realizations === 0) return [];
   const of = `${integer(control.still_falling)} of ${count(control.realizations, "realization")}`;
   if (control.still_falling === 0)
-    return [{ grade: "good", text: `Without shaking nothing more came down: ${count(control.realizations, "control run")}.` }];
+    return [
+      {
+        grade: "good",
+        text: `Without shaking nothing more came down: ${count(control.realizations, "control run")}.`,
+      },
+    ];
   return [
     {
       grade: "attention",
