@@ -56,8 +56,7 @@ std::string why_few_fits(const statistics::FragilityCurve& curve) {
   const auto rocks = count(curve.refits.rocks), records = count(curve.refits.records);
   const std::string of = rocks == 0 ? fmt::format("{} of {} records", records, curve.refits.records.size())
                                     : fmt::format("{} of {} realizations", rocks, curve.refits.rocks.size());
-  return fmt::format("it hangs on single {}: without one of {} there is none",
-                     rocks == 0 ? "records" : "realizations", of);
+  return fmt::format("it hangs on single ones: {} cannot be left out", of);
 }
 
 }  // namespace

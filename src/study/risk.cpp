@@ -23,10 +23,10 @@ using statistics::Stripe;
 constexpr double largest_share_of_ends = 0.05;
 constexpr double largest_share_below_runs = 0.30;
 
-std::size_t intensity_of(const std::vector<Hazard>& hazards) {
+std::size_t intensity_of(const StudyData& study, const std::vector<Hazard>& hazards) {
   const Hazard& first = hazards.front();
   std::string known, same_name;
-  for (std::size_t k = 0; k < intensities().size(); ++k) {
+  for (const std::size_t k : known_intensities(study)) {
     const Intensity& own = intensities()[k];
     if (own.kind == first.found.intensity && own.component == first.source.component) return k;
     known += fmt::format("{}{} of {}", known.empty() ? "" : ", ", own.kind, own.component);
@@ -294,7 +294,7 @@ Risk find_risk(const StudyData& study, const Summary& summary, const RiskSetting
   check_level(study, level);
   Risk risk;
   risk.hazards = read_hazards(settings);
-  risk.intensity = intensity_of(risk.hazards);
+  risk.intensity = intensity_of(study, risk.hazards);
   risk.lifetime = settings.lifetime;
   risk.sections = settings.sections;
   risk.confidence = study.confidence;

@@ -106,6 +106,8 @@ TEST_F(RiskOfAStudy, RefusesAnotherIntensity) {
     return "";
   };
   RiskSettings other = settings();
+  other.hazards[0].component = "rotd50";  // which these runs do not have
+  EXPECT_THAT(refusal(other, ""), HasSubstr("component rotd50"));
   other.hazards[0].component = "larger";
   EXPECT_THAT(refusal(other, ""), HasSubstr("found a hazard of PGA, component larger"));
   EXPECT_THAT(refusal(settings(), "heavy"), HasSubstr("found \"heavy\"; expected light"));
