@@ -76,7 +76,8 @@ std::vector<std::string_view> HazardText::lines() const {
   return found;
 }
 
-void HazardText::fail(std::size_t line, std::string found, std::string expected, std::string hint) const {
+void HazardText::fail(std::size_t line, const std::string& found, std::string expected,
+                      std::string hint) const {
   Diagnostic diagnostic;
   diagnostic.where.file = file;
   diagnostic.where.line = static_cast<int>(line);

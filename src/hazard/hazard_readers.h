@@ -13,7 +13,7 @@ struct HazardText {
   std::string file, content;
   [[nodiscard]] std::vector<std::string_view> lines() const;
   /// line: from 1; 0: of the file as a whole.
-  [[noreturn]] void fail(std::size_t line, std::string found, std::string expected,
+  [[noreturn]] void fail(std::size_t line, const std::string& found, std::string expected,
                          std::string hint = {}) const;
 };
 

@@ -54,11 +54,11 @@ Split split_of(const FragilityTable& table, const FragilityCurve& curve, const S
   std::size_t k = 0;
   for (const auto& [id, parts] : table.clusters)
     rocks.push_back(variances_without(table, pairs, curve.refits.rocks[k++], rho,
-                                      [&](const Pair& pair) { return pair.rock == id; }));
+                                      [rock = id](const Pair& pair) { return pair.rock == rock; }));
   k = 0;
   for (const auto& [id, parts] : table.records)
     records.push_back(variances_without(table, pairs, curve.refits.records[k++], rho,
-                                        [&](const Pair& pair) { return pair.record == id; }));
+                                        [record = id](const Pair& pair) { return pair.record == record; }));
   const Variances whole = variances_of(curve.fit, rho);
   const auto estimated = [&](double Variances::*part) {
     const auto each = [&](const std::vector<Variances>& all) {
