@@ -336,6 +336,24 @@ ControlSummary control_summary(const StudyData& study) {
   return summary;
 }
 
+/// The runs of the next combination: which count, and what is known of them.
+void take_runs(const StudyData& study, const std::vector<std::size_t>& members, Summary& summary,
+               Combination& c) {
+  for (const std::size_t r : members) {
+    summary.combination_of[r] = static_cast<int>(summary.combinations.size());
+    if (!study.runs[r].variant.empty()) continue;
+    if (measured(study, study.runs[r]).damage)
+      c.runs.push_back(r);
+    else
+      ++c.failed;
+    if (summary.marginal[r] != Marginal::unknown) ++c.checked;
+    if (summary.marginal[r] == Marginal::yes) ++c.marginal;
+  }
+  std::stable_sort(c.runs.begin(), c.runs.end(), [&](std::size_t a, std::size_t b) {
+    return study.runs[a].realization < study.runs[b].realization;
+  });
+}
+
 }  // namespace
 
 Summary summarize(const StudyData& study) {
@@ -353,19 +371,7 @@ Summary summarize(const StudyData& study) {
   for (const auto& [key, members] : groups) {
     Combination c;
     c.values = key.second;
-    for (const std::size_t r : members) {
-      summary.combination_of[r] = static_cast<int>(summary.combinations.size());
-      if (!study.runs[r].variant.empty()) continue;
-      if (measured(study, study.runs[r]).damage)
-        c.runs.push_back(r);
-      else
-        ++c.failed;
-      if (summary.marginal[r] != Marginal::unknown) ++c.checked;
-      if (summary.marginal[r] == Marginal::yes) ++c.marginal;
-    }
-    std::stable_sort(c.runs.begin(), c.runs.end(), [&](std::size_t a, std::size_t b) {
-      return study.runs[a].realization < study.runs[b].realization;
-    });
+    take_runs(study, members, summary, c);
     average_intensity(study, c);
     choose_worst_and_median(study, c);
     describe_measures(study, store, c);
