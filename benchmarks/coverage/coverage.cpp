@@ -23,7 +23,8 @@ struct Design {
 
 double draw(const Design& d, int study, std::uint32_t what, int who) {
   const auto seed = static_cast<std::uint64_t>(1000 * d.rocks + d.records);
-  const keyblock::RandomStream stream(seed, static_cast<std::uint32_t>(study), what, static_cast<std::uint32_t>(who));
+  const keyblock::RandomStream stream(seed, static_cast<std::uint32_t>(study), what,
+                                      static_cast<std::uint32_t>(who));
   return keyblock::inverse_normal_cdf(stream.uniform(0));
 }
 
@@ -57,21 +58,27 @@ void tell(const Design& d) {
     none.widest_theta = none.widest_beta = HUGE_VAL;
     const FragilityCurve curve = fragility_curve(drawn(d, s), {}, 0.95, none);
     if (curve.status != FragilityStatus::fitted) continue;
-    const auto log_rate = [](const FragilityFit& f) { return -2.0 * std::log(f.theta) + 2.0 * f.beta * f.beta; };
+    const auto log_rate = [](const FragilityFit& f) {
+      return -2.0 * std::log(f.theta) + 2.0 * f.beta * f.beta;
+    };
     ++fitted;
     theta += holds(curve.theta, 1.0) ? 1 : 0;
     beta += holds(curve.beta, std::sqrt(variance)) ? 1 : 0;
-    rate += holds(two_way_interval(log_rate(curve.fit), curve.refits.numbers(log_rate), 0.95), 2.0 * variance) ? 1 : 0;
+    rate += holds(two_way_interval(log_rate(curve.fit), curve.refits.numbers(log_rate), 0.95), 2.0 * variance)
+                ? 1
+                : 0;
   }
   const auto share = [&](int count) { return 100.0 * count / fitted; };
-  fmt::print("| {} × {} ({}) | {} / {} / {} | {:.0f} % | {:.0f} % | {:.0f} % |\n", d.rocks, d.records, d.each, d.rock,
-             d.record, d.rest, share(theta), share(beta), share(rate));
+  fmt::print("| {} × {} ({}) | {} / {} / {} | {:.0f} % | {:.0f} % | {:.0f} % |\n", d.rocks, d.records, d.each,
+             d.rock, d.record, d.rest, share(theta), share(beta), share(rate));
 }
 
 }  // namespace
 
 int main() {
-  fmt::print("| realizations × records (each sees) | σ of rock / record / pair | θ | β | rate |\n|---|---|---|---|---|\n");
+  fmt::print(
+      "| realizations × records (each sees) | σ of rock / record / pair | θ | β | rate "
+      "|\n|---|---|---|---|---|\n");
   for (const Design& d : {Design{100, 1, 1, 0.35, 0.30, 0.20}, Design{20, 3, 3, 0.35, 0.30, 0.20},
                           Design{20, 11, 11, 0.35, 0.30, 0.20}, Design{40, 20, 2, 0.35, 0.30, 0.20},
                           Design{66, 11, 2, 0.35, 0.30, 0.20}, Design{154, 22, 1, 0.35, 0.30, 0.20},

@@ -57,7 +57,8 @@ std::optional<GroundMotion> horizontal_motion(
   for (const auto& component : components)
     if (!component.second.vertical) horizontal.push_back(component);
   if (horizontal.size() != 2) return std::nullopt;
-  const double apart = std::abs(std::remainder(horizontal[1].second.azimuth - horizontal[0].second.azimuth, 180.0));
+  const double apart =
+      std::abs(std::remainder(horizontal[1].second.azimuth - horizontal[0].second.azimuth, 180.0));
   if (!(90.0 - apart <= right_angle_tolerance)) return std::nullopt;
   // The window is that of all components.
   ProjectionOptions one = options;

@@ -13,8 +13,8 @@ struct MotionMeasures {
   double peak_time = 0.0;  ///< s
   double peak_velocity =
       0.0;  ///< m/s, largest |∫a dt| from rest at the first sample, no baseline correction (PGV)
-  double final_velocity = 0.0;   ///< m/s, ∫a dt over the whole record; far from 0: the record drifts
-  double arias_intensity = 0.0;  ///< m/s, π/(2g) ∫a² dt (Arias 1970)
+  double final_velocity = 0.0;     ///< m/s, ∫a dt over the whole record; far from 0: the record drifts
+  double arias_intensity = 0.0;    ///< m/s, π/(2g) ∫a² dt (Arias 1970)
   double absolute_velocity = 0.0;  ///< m/s, ∫|a| dt (cumulative absolute velocity, CAV; EPRI 1988)
   double significant_duration =
       0.0;  ///< s, between 5 % and 95 % of the Arias intensity (Trifunac & Brady 1975)

@@ -59,8 +59,9 @@ MotionSeries motion_series(const MotionComponent& component, Baseline baseline) 
   return series;
 }
 
-std::vector<double> oscillator_history(const std::vector<double>& time, const std::vector<double>& acceleration,
-                                       double period, double damping) {
+std::vector<double> oscillator_history(const std::vector<double>& time,
+                                       const std::vector<double>& acceleration, double period,
+                                       double damping) {
   constexpr double places = 40.0, most_parts = 64.0, same = 1e-6;
   const double omega = 2.0 * std::numbers::pi / period;
   std::vector<double> history{0.0};

@@ -92,7 +92,8 @@ void MeasureObserver::contacts(const record::ContactFrame& frame) {
 }
 
 void MeasureObserver::add_record(const record::Stage& stage, StageMeasures& measures) const {
-  if (stage.kind != record::StageKind::shake || stage.motion < 0 || at(stage.motion) >= records_.size()) return;
+  if (stage.kind != record::StageKind::shake || stage.motion < 0 || at(stage.motion) >= records_.size())
+    return;
   const auto& [name, record] = records_[at(stage.motion)];
   const double scale = std::abs(stage.scale);
   measures.record = name;

@@ -30,8 +30,10 @@ const std::array<Intensity, intensity_count> all_intensities{
      {"arias_m_s", "Arias intensity", "m/s", &StageMeasures::arias, 2, "IA", "section"},
      {"pga_rotd50_m_s2", "PGA (RotD50)", "m/s²", &StageMeasures::pga_rotd50, 1, "PGA", "rotd50"},
      {"pgv_rotd50_m_s", "PGV (RotD50)", "m/s", &StageMeasures::pgv_rotd50, 1, "PGV", "rotd50"},
-     {"sa_03_rotd50_m_s2", "SA(0.3 s) (RotD50)", "m/s²", &StageMeasures::sa_03_rotd50, 1, "SA(0.3)", "rotd50"},
-     {"sa_10_rotd50_m_s2", "SA(1 s) (RotD50)", "m/s²", &StageMeasures::sa_10_rotd50, 1, "SA(1.0)", "rotd50"}}};
+     {"sa_03_rotd50_m_s2", "SA(0.3 s) (RotD50)", "m/s²", &StageMeasures::sa_03_rotd50, 1, "SA(0.3)",
+      "rotd50"},
+     {"sa_10_rotd50_m_s2", "SA(1 s) (RotD50)", "m/s²", &StageMeasures::sa_10_rotd50, 1, "SA(1.0)",
+      "rotd50"}}};
 
 }  // namespace
 

@@ -226,7 +226,11 @@ ordered_json head(const StudyData& study, const Summary& summary) {
   ordered_json kinds = ordered_json::array();
   for (const std::size_t k : known_intensities(study)) {
     const Intensity& i = intensities()[k];
-    kinds.push_back({{"name", i.name}, {"title", i.title}, {"unit", i.unit}, {"kind", i.kind}, {"component", i.component}});
+    kinds.push_back({{"name", i.name},
+                     {"title", i.title},
+                     {"unit", i.unit},
+                     {"kind", i.kind},
+                     {"component", i.component}});
   }
   int realizations = 0;
   {

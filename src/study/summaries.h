@@ -24,7 +24,7 @@ struct Measured {
   std::optional<record::Damage> damage;  ///< none where the run failed or did not get there
   /// As intensities(): largest over the stages between. No number where a stage shakes whose record does not have it.
   std::array<double, intensity_count> intensity{};
-  std::string record;                    ///< of the stages between that shake, by name
+  std::string record;  ///< of the stages between that shake, by name
 };
 Measured measured(const StudyData& study, const RunResult& run);
 
@@ -55,10 +55,11 @@ struct DamagePart {
 
 /// All runs with the same value on every axis, variant "".
 struct Combination {
-  std::vector<std::string> values;           ///< as RunResult::values
-  std::vector<std::size_t> runs;             ///< those measured: places in StudyData::runs, by realization
-  std::size_t failed = 0;                    ///< those with an error, or without the stage
-  std::array<double, intensity_count> intensity{};  ///< mean over the runs; all alike unless the motion varies
+  std::vector<std::string> values;  ///< as RunResult::values
+  std::vector<std::size_t> runs;    ///< those measured: places in StudyData::runs, by realization
+  std::size_t failed = 0;           ///< those with an error, or without the stage
+  std::array<double, intensity_count>
+      intensity{};                           ///< mean over the runs; all alike unless the motion varies
   std::optional<std::size_t> worst, median;  ///< runs with the largest and with the middle fallen area
   std::size_t checked = 0, marginal = 0;  ///< runs of which it is known, and those of them that are marginal
   std::vector<MeasureSummary> measures;   ///< as measures()

@@ -65,7 +65,8 @@ class Task {
   TaskOutcome run(const simulation::RunSetup& setup, const TaskOptions& options) {
     std::vector<ShakingRecord> records;
     for (std::size_t k = 0; k < setup.motions.size(); ++k)
-      records.push_back({setup.motions[k].name(), k < horizontal_.size() ? horizontal_[k] : loading::HorizontalMeasures{}});
+      records.push_back(
+          {setup.motions[k].name(), k < horizontal_.size() ? horizontal_[k] : loading::HorizontalMeasures{}});
     MeasureObserver measures(result_, plan_.grid, setup.system.blocks.size(), setup.damage.loosened_distance,
                              std::move(records));
     std::unique_ptr<results::ResultWriter> writer;
@@ -101,7 +102,9 @@ class Task {
   }
 
   RunResult& result() { return result_; }
-  void set_horizontal(std::vector<loading::HorizontalMeasures> measures) { horizontal_ = std::move(measures); }
+  void set_horizontal(std::vector<loading::HorizontalMeasures> measures) {
+    horizontal_ = std::move(measures);
+  }
 
  private:
   const Plan& plan_;

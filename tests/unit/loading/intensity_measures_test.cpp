@@ -58,7 +58,8 @@ TEST(IntensityMeasures, OfARecord) {
       horizontal_motion({{h1, ComponentDirection{false, 360.0}}, {h2, ComponentDirection{false, 270.0}}}, {});
   ASSERT_TRUE(horizontal);
   const std::vector<RotatedMeasure> all = rotated_measures(*horizontal);
-  const double rotd50[] = {0.86414, 0.098846, 2.83844, 0.695944}, rotd100[] = {1.04417, 0.135204, 3.30527, 0.871099};
+  const double rotd50[] = {0.86414, 0.098846, 2.83844, 0.695944},
+               rotd100[] = {1.04417, 0.135204, 3.30527, 0.871099};
   const double tolerance[] = {1e-4, 2e-4, 2e-3, 2e-3};
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_NEAR(all[k].rotd50 / rotd50[k], 1.0, tolerance[k]) << all[k].name;
