@@ -69,6 +69,7 @@ void describe(CLI::App& app, int& exit_code) {
   add_motion(app, exit_code);
   add_verify(app, exit_code);
   add_study(app);
+  add_risk(app);
   add_limit(app);
   add_safety(app);
   add_bolt(app);

@@ -29,5 +29,6 @@ void add_manual(CLI::App& app);
 
 /// study run, study task, study collect, study submit.
 void add_study(CLI::App& app);
+void add_risk(CLI::App& app);
 
 }  // namespace keyblock::app

@@ -25,6 +25,7 @@ ordered_json components_json(const std::vector<loading::MotionComponent>& compon
     json["final_velocity_m_s"] = m.final_velocity;
     json["arias_m_s"] = m.arias_intensity;
     json["significant_duration_s"] = m.significant_duration;
+    json["cav_m_s"] = m.absolute_velocity;
     json["processing"] = c.processing;
     json["notes"] = loading::motion_notes(c);
     list.push_back(std::move(json));

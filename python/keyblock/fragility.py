@@ -48,6 +48,10 @@ class Fragility:
     theta: Estimate  #: the median, in the unit of the intensity
     beta: Estimate  #: the logarithmic standard deviation
     realizations: int
+    records: int  #: ground motions; with one of them intervals are for this record only
+    which_records: str  #: of which records the intervals tell; empty without a curve
+    sigma: dict[str, Estimate]  #: what of β is of the `rock`, of the `record` and of the `rest`; NaN where it is not known
+    not_monotone: int  #: pairs of rock mass and record that exceed the level at an intensity and not at a stronger one
     points: dict[str, np.ndarray] = field(repr=False)  #: intensity, n, exceeded, realizations, probability, low, high
     curve: dict[str, np.ndarray] = field(repr=False)  #: intensity, probability, low, high; empty without a curve
 
@@ -66,6 +70,10 @@ class Fragility:
             theta=Estimate.of(found["theta"]),
             beta=Estimate.of(found["beta"]),
             realizations=found["realizations"],
+            records=found["records"],
+            which_records=found["which_records"] or "",
+            sigma={name: Estimate.of(part) for name, part in found["sigma"].items()},
+            not_monotone=found["not_monotone"],
             points={name: np.asarray(column, dtype=float) for name, column in found["points"].items()},
             curve={name: np.asarray(column, dtype=float) for name, column in found["curve"].items()},
         )

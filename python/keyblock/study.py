@@ -180,6 +180,16 @@ class Study:
             if level in (None, found["level"]) and intensity in (None, found["intensity"])
         ]
 
+    def risk(self, folder: str | Path | None = None) -> record.Record:
+        """How often a year each level is exceeded: risk.json, as `keyblock risk` wrote it. `folder`: of its -o.
+
+        Throws NoResultError where there is none.
+        """
+        path = (Path(folder) if folder is not None else self.path / "risk") / "risk.json"
+        if not path.exists():
+            raise NoResultError(f"{path}: no such file: keyblock risk {self.path} --settings risk.toml")
+        return record.read(path)
+
     @property
     def maps(self) -> list[FrequencyMap]:
         """Where rock falls, a map per combination."""

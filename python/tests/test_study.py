@@ -232,3 +232,15 @@ def test_a_limit_that_is_still_searched_for(limit_folder, tmp_path):
     (tmp_path / "limit.json").write_text(json.dumps(told))
     with pytest.warns(kb.UnfinishedWarning, match="the search goes on, or was stopped"):
         assert np.isnan(kb.open(tmp_path).value)
+
+
+def test_risk_is_that_of_the_command(study, tmp_path):
+    with pytest.raises(kb.NoResultError, match="keyblock risk"):
+        study.risk()
+    (tmp_path / "risk.json").write_text('{"levels": [{"level": "light", "rate": {"value": 1e-3, "low": null, "high": null}}]}')
+    assert study.risk(tmp_path)["levels"][0]["rate"]["value"] == 1e-3
+
+
+def test_curves_tell_of_which_records_they_are(study):
+    for curve in study.fragility():
+        assert curve.records == 1 and set(curve.sigma) == {"rock", "record", "rest"}

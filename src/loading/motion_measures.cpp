@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "loading/intensity_measures.h"
 
 namespace keyblock::loading {
 namespace {
@@ -119,6 +120,9 @@ MotionMeasures measure(const MotionComponent& component) {
     }
     velocity += 0.5 * h * (a[k - 1] + a[k]);
     m.peak_velocity = std::max(m.peak_velocity, std::abs(velocity));
+    m.absolute_velocity += a[k - 1] * a[k] < 0.0
+                               ? 0.5 * h * (a[k - 1] * a[k - 1] + a[k] * a[k]) / std::abs(a[k] - a[k - 1])
+                               : 0.5 * h * std::abs(a[k - 1] + a[k]);
     squares.push_back(squares.back() + h / 3.0 * (a[k - 1] * a[k - 1] + a[k - 1] * a[k] + a[k] * a[k]));
   }
   m.final_velocity = velocity;
@@ -220,8 +224,8 @@ std::string describe_component(const MotionComponent& c) {
                       m.peak / standard_gravity, m.peak_time);
   text += fmt::format("    peak velocity        {:.4g} m/s (integrated from rest; {:.4f} m/s at the end)\n",
                       m.peak_velocity, m.final_velocity);
-  text += fmt::format("    Arias intensity      {:.4g} m/s; 5-95 % duration {:.4g} s\n", m.arias_intensity,
-                      m.significant_duration);
+  text += fmt::format("    Arias intensity      {:.4g} m/s; 5-95 % duration {:.4g} s; CAV {:.4g} m/s\n",
+                      m.arias_intensity, m.significant_duration, m.absolute_velocity);
   if (!c.processing.empty())
     text += fmt::format("    reading              {}\n", printable(c.processing, longest_text));
   for (const std::string& note : motion_notes(c)) text += fmt::format("    note                 {}\n", note);
@@ -240,6 +244,15 @@ std::vector<std::string> motion_notes(const MotionComponent& component) {
   return notes;
 }
 
+std::string describe_rotated(const std::vector<MotionComponent>& components) {
+  const auto horizontal = horizontal_pair(components);
+  if (!horizontal) return {};
+  std::string text = "\nRotD50, RotD100 of the two horizontal components\n";
+  for (const RotatedMeasure& m : rotated_measures(*horizontal))
+    text += fmt::format("    {:<20} {:.4g}, {:.4g} {}\n", m.name, m.rotd50, m.rotd100, m.unit);
+  return text;
+}
+
 std::string describe_motion(const std::vector<MotionComponent>& components) {
   std::string text;
   std::string file;
@@ -250,7 +263,7 @@ std::string describe_motion(const std::vector<MotionComponent>& components) {
     }
     text += describe_component(c);
   }
-  return text;
+  return text + describe_rotated(components);
 }
 
 }  // namespace keyblock::loading

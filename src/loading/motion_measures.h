@@ -13,8 +13,9 @@ struct MotionMeasures {
   double peak_time = 0.0;  ///< s
   double peak_velocity =
       0.0;  ///< m/s, largest |∫a dt| from rest at the first sample, no baseline correction (PGV)
-  double final_velocity = 0.0;   ///< m/s, ∫a dt over the whole record; far from 0: the record drifts
-  double arias_intensity = 0.0;  ///< m/s, π/(2g) ∫a² dt (Arias 1970)
+  double final_velocity = 0.0;     ///< m/s, ∫a dt over the whole record; far from 0: the record drifts
+  double arias_intensity = 0.0;    ///< m/s, π/(2g) ∫a² dt (Arias 1970)
+  double absolute_velocity = 0.0;  ///< m/s, ∫|a| dt (cumulative absolute velocity, CAV; EPRI 1988)
   double significant_duration =
       0.0;  ///< s, between 5 % and 95 % of the Arias intensity (Trifunac & Brady 1975)
 };
@@ -53,7 +54,8 @@ MotionComponent cut_out(MotionComponent component, double from, double to);
 /// What is told of a component beside its numbers: an unusual peak, jumps at its ends, what was assumed on reading.
 std::vector<std::string> motion_notes(const MotionComponent& component);
 
-/// What a file holds, for people: one paragraph per component, then the notes.
+/// What files hold, for people: one paragraph per component with its notes, then what two horizontal ones have together
+/// (intensity_measures.h).
 std::string describe_motion(const std::vector<MotionComponent>& components);
 
 /// A picture as an SVG document. Per component: acceleration, velocity and displacement over time, response spectra of 5 % damping, and

@@ -34,29 +34,6 @@ class OscillatorStep {
   double h_, xx_ = 0.0, xv_ = 0.0, vx_ = 0.0, vv_ = 0.0, w2_ = 0.0, lag_ = 0.0;
 };
 
-double largest_displacement(const MotionSeries& series, double period, double damping) {
-  constexpr double places = 40.0, most_parts = 64.0, same = 1e-6;
-  const double omega = 2.0 * std::numbers::pi / period;
-  double x = 0.0, v = 0.0, largest = 0.0, full = 0.0, parts = 1.0;
-  OscillatorStep step(omega, damping, period / places);
-  for (std::size_t k = 1; k < series.time.size(); ++k) {
-    const double h = series.time[k] - series.time[k - 1];
-    if (!(h > 0.0)) continue;
-    // Times of even samples differ by rounding only.
-    if (!(std::abs(h - full) <= same * h)) {
-      full = h;
-      parts = std::clamp(std::ceil(h * places / period), 1.0, most_parts);
-      step = OscillatorStep(omega, damping, h / parts);
-    }
-    const double a = series.acceleration[k - 1], b = series.acceleration[k];
-    for (double part = 0.0; part < parts; part += 1.0) {
-      step.advance(x, v, a + (b - a) * part / parts, a + (b - a) * (part + 1.0) / parts);
-      largest = std::max(largest, std::abs(x));
-    }
-  }
-  return largest;
-}
-
 }  // namespace
 
 MotionSeries motion_series(const MotionComponent& component, Baseline baseline) {
@@ -82,12 +59,41 @@ MotionSeries motion_series(const MotionComponent& component, Baseline baseline) 
   return series;
 }
 
+std::vector<double> oscillator_history(const std::vector<double>& time,
+                                       const std::vector<double>& acceleration, double period,
+                                       double damping) {
+  constexpr double places = 40.0, most_parts = 64.0, same = 1e-6;
+  const double omega = 2.0 * std::numbers::pi / period;
+  std::vector<double> history{0.0};
+  double x = 0.0, v = 0.0, full = 0.0, parts = 1.0;
+  OscillatorStep step(omega, damping, period / places);
+  for (std::size_t k = 1; k < time.size(); ++k) {
+    const double h = time[k] - time[k - 1];
+    if (!(h > 0.0)) continue;
+    // Times of even samples differ by rounding only.
+    if (!(std::abs(h - full) <= same * h)) {
+      full = h;
+      parts = std::clamp(std::ceil(h * places / period), 1.0, most_parts);
+      step = OscillatorStep(omega, damping, h / parts);
+    }
+    const double a = acceleration[k - 1], b = acceleration[k];
+    for (double part = 0.0; part < parts; part += 1.0) {
+      step.advance(x, v, a + (b - a) * part / parts, a + (b - a) * (part + 1.0) / parts);
+      history.push_back(x);
+    }
+  }
+  return history;
+}
+
 std::vector<double> response_spectrum(const MotionSeries& series, const std::vector<double>& periods,
                                       double damping) {
   std::vector<double> spectrum;
   for (const double period : periods) {
     const double omega = 2.0 * std::numbers::pi / period;
-    spectrum.push_back(omega * omega * largest_displacement(series, period, damping));
+    double largest = 0.0;
+    for (const double x : oscillator_history(series.time, series.acceleration, period, damping))
+      largest = std::max(largest, std::abs(x));
+    spectrum.push_back(omega * omega * largest);
   }
   return spectrum;
 }

@@ -17,6 +17,12 @@ struct MotionSeries {
 };
 MotionSeries motion_series(const MotionComponent& component, Baseline baseline);
 
+/// x of an oscillator x'' + 2 ζ ω x' + ω² x = −a(t) that is at rest at the first sample, m. Exact for a(t) linear between samples (Nigam &
+/// Jennings 1969), at forty places in a period, or at sixty-four between two samples; the same places for all of one time.
+std::vector<double> oscillator_history(const std::vector<double>& time,
+                                       const std::vector<double>& acceleration, double period,
+                                       double damping);
+
 /// Pseudo-acceleration ω² max |x| of oscillators x'' + 2 ζ ω x' + ω² x = −a(t) that are at rest at the first sample, m/s², one per period
 /// (s). Exact for a(t) linear between samples (Nigam & Jennings 1969); the largest |x| is looked for at forty places in a period, or at
 /// sixty-four between two samples.

@@ -65,6 +65,24 @@ class MotionReader {
     return motions;
   }
 
+  /// As horizontal_measures has it.
+  std::vector<loading::HorizontalMeasures> measure() {
+    std::vector<loading::HorizontalMeasures> measures;
+    for (const MotionSpec& spec : scenario_.motions) {
+      loading::HorizontalMeasures& found = measures.emplace_back();
+      if (spec.components.empty()) continue;
+      const Components components = read_components(spec);
+      const loading::ProjectionOptions options = options_of(spec);
+      const auto horizontal = loading::horizontal_motion(components, options);
+      if (!horizontal) continue;
+      const bool has_target = spec.pga || spec.pgv;
+      const double factor =
+          has_target ? factor_to_target(spec, loading::project_motion(spec.name, components, options)) : 1.0;
+      found = loading::horizontal_measures(*horizontal, factor);
+    }
+    return measures;
+  }
+
  private:
   // Mistakes without a file are about keys of the motion.
   Diagnostic placed(const MotionSpec& spec, Diagnostic diagnostic) const {
@@ -83,8 +101,10 @@ class MotionReader {
                                  spec.sine_y ? loading::sine_table(*spec.sine_y) : spec.y);
   }
 
-  GroundMotion record(const MotionSpec& spec) {
-    std::vector<std::pair<MotionComponent, ComponentDirection>> components;
+  using Components = std::vector<std::pair<MotionComponent, ComponentDirection>>;
+
+  Components read_components(const MotionSpec& spec) {
+    Components components;
     std::vector<Diagnostic> mistakes;
     has_told_of_components_ = false;
     for (const MotionComponentSpec& component : spec.components) {
@@ -99,11 +119,21 @@ class MotionReader {
       }
     }
     if (!mistakes.empty()) throw InputError(std::move(mistakes));
-    if (!has_told_of_components_) warn_of_azimuths(spec, components);
+    return components;
+  }
+
+  [[nodiscard]] loading::ProjectionOptions options_of(const MotionSpec& spec) const {
     loading::ProjectionOptions options;
     options.section_azimuth = scenario_.section_azimuth.value_or(0.0);
     options.window = spec.window;
     options.baseline = spec.baseline;
+    return options;
+  }
+
+  GroundMotion record(const MotionSpec& spec) {
+    const Components components = read_components(spec);
+    if (!has_told_of_components_) warn_of_azimuths(spec, components);
+    const loading::ProjectionOptions options = options_of(spec);
     GroundMotion motion = loading::project_motion(spec.name, components, options);
     if (spec.window) warn_of_jumps(spec, motion);
     return motion;
@@ -143,14 +173,17 @@ class MotionReader {
 
   /// The peak along the section is that of the target.
   [[nodiscard]] GroundMotion to_target(const MotionSpec& spec, const GroundMotion& motion) const {
-    if (!spec.pga && !spec.pgv) return motion;
+    return spec.pga || spec.pgv ? motion.scaled(factor_to_target(spec, motion)) : motion;
+  }
+
+  [[nodiscard]] double factor_to_target(const MotionSpec& spec, const GroundMotion& motion) const {
     const loading::ShakingMeasures along = loading::measure_along({1.0, 0.0}, motion, 1.0, motion.duration());
     const double found = spec.pga ? along.peak : along.peak_velocity;
     if (!(found > 0.0))
       fail(spec.path + (spec.pga ? ".pga" : ".pgv"),
            "a target for a motion that does not shake along the section",
            "a motion with a horizontal component in the section");
-    return motion.scaled((spec.pga ? *spec.pga : *spec.pgv) / found);
+    return (spec.pga ? *spec.pga : *spec.pgv) / found;
   }
 
   void warn_of_jumps(const MotionSpec& spec, const GroundMotion& motion) {
@@ -301,6 +334,11 @@ std::vector<rockmass::Trace> read_trace_maps(const Scenario& scenario,
   }
   if (!mistakes.empty()) throw InputError(std::move(mistakes));
   return traces;
+}
+
+std::vector<loading::HorizontalMeasures> horizontal_measures(const Scenario& scenario) {
+  std::vector<std::string> unused;  // told where the motions are read
+  return MotionReader(scenario, unused).measure();
 }
 
 std::vector<GroundMotion> read_motions(const Scenario& scenario, std::vector<std::string>& warnings) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "loading/ground_motion.h"
+#include "loading/intensity_measures.h"
 #include "rockmass/trace.h"
 #include "scenario/scenario.h"
 #include "simulation/setup.h"
@@ -27,6 +28,10 @@ std::vector<rockmass::Trace> read_trace_maps(
 /// tables and sines as they are; unscaled. What the user should know is added to `warnings`: notes of the readers,
 /// directions that are not those the files name.
 std::vector<loading::GroundMotion> read_motions(const Scenario& scenario, std::vector<std::string>& warnings);
+
+/// RotD50 of the records of all [[motion]], in their order, over the window and after their baseline and target; unscaled. No numbers of what
+/// has no two horizontal components.
+std::vector<loading::HorizontalMeasures> horizontal_measures(const Scenario& scenario);
 
 /// What seems wrong with a scenario that can be run: K0 below 1/3, an excavation that no stage takes out, … Reads no
 /// files.

@@ -287,8 +287,27 @@ class Plausibility {
     for (const MotionSpec& motion : scenario_.motions) {
       const int index = static_cast<int>(&motion - scenario_.motions.data());
       const auto uses = [&](const Stage& stage) { return stage.motion == index; };
-      if (!any_stage(uses)) warn("{}: no stage uses it", motion.path);
+      if (!any_stage(uses) && !is_varied(motion)) warn("{}: no stage uses it", motion.path);
     }
+  }
+
+  /// Whether a study gives it to a stage.
+  [[nodiscard]] bool is_varied(const MotionSpec& motion) const {
+    if (!scenario_.study) return false;
+    Value name;
+    name.type = Value::Type::string;
+    name.text = motion.name;
+    const std::string text = to_toml(name);
+    const auto gives = [&](const VarySpec& axis, std::size_t key) {
+      const auto path = parse_key_path(axis.keys[key]);
+      return path && path->front().key == "stage" && path->back().key == "motion" &&
+             std::ranges::any_of(axis.values, [&](const auto& row) { return row.at(key) == text; });
+    };
+    return std::ranges::any_of(scenario_.study->vary, [&](const VarySpec& axis) {
+      for (std::size_t key = 0; key < axis.keys.size(); ++key)
+        if (gives(axis, key)) return true;
+      return false;
+    });
   }
 
   // Of a stage that shakes, after another one.

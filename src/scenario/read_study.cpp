@@ -40,15 +40,30 @@ void read_keys(TableReader& t, VarySpec& vary) {
   for (const Value& item : keys->items) vary.keys.push_back(item.text);
 }
 
+void read_rotation(TableReader& t, VarySpec& vary, std::size_t values) {
+  t.integer(
+      "per_realization", vary.per_realization,
+      {.meaning =
+           "How many of the values each realization takes, in rotation: with records as values, each rock "
+           "mass sees some of them, and each record many rock masses.",
+       .at_least = 1.0,
+       .fallback = "all"});
+  if (!t.documenting() && vary.per_realization && static_cast<std::size_t>(*vary.per_realization) > values)
+    t.fail("per_realization", "the integer " + std::to_string(*vary.per_realization),
+           "at most the " + std::to_string(values) + " of `values`");
+}
+
 void read_vary(TableReader& t, VarySpec& vary) {
   read_keys(t, vary);
   const Value* values =
       t.any("values", "array", {.meaning = "The values it takes.", .required = true, .kinds = value_list});
+  if (t.documenting()) read_rotation(t, vary, 0);
   if (values == nullptr) return;
   if (!values->is(Value::Type::array) || values->items.empty()) {
     t.fail("values", describe(*values), "an array of values");
     return;
   }
+  read_rotation(t, vary, values->items.size());
   const bool several = t.find("keys") != nullptr;
   std::vector<const Value*> seen;
   for (std::size_t k = 0; k < values->items.size(); ++k) {
@@ -145,6 +160,17 @@ void read_marginal(TableReader& t, StudySpec& study) {
           });
 }
 
+void read_control(TableReader& t, StudySpec& study) {
+  t.boolean(
+      "control", study.control,
+      {.meaning = "Runs each rock mass once more without the shaking that comes after `since`. What comes "
+                  "down in that run, gravity brought "
+                  "down, and it is taken off what counts as brought down by the shaking."});
+  if (study.control && study.since == from_the_start)
+    t.fail("control", "true with since = \"start\", which counts all that gravity brought down",
+           "one of the two");
+}
+
 void read_keys_of_study(TableReader& t, StudySpec& study) {
   const bool until = t.find("until") != nullptr;
   Rule rule{.meaning = "Number of realizations of the joint sets.", .at_least = 1.0, .applies = !until};
@@ -180,6 +206,7 @@ void read_keys_of_study(TableReader& t, StudySpec& study) {
           [&](TableReader& u) { read_until(u, study.until.emplace()); });
   read_levels(t, study);
   read_marginal(t, study);
+  read_control(t, study);
   t.table("map", {.meaning = "The raster on which is counted how often rock falls."}, [&](TableReader& m) {
     m.number("cell", study.map_cell,
              {.meaning = "Width of a cell.",

@@ -203,15 +203,6 @@ void warn_of_short_stage(const Stage& stage, const GroundMotion& motion, std::ve
         join_path("stage", stage.name), *stage.duration, motion.duration(), motion.name(), 100.0 * share));
 }
 
-/// The shaking stage whose scale a key path leads to, or null.
-const Stage* stage_of_scale(const Scenario& scenario, const std::string& key) {
-  const auto path = parse_key_path(key);
-  if (!path || path->size() != 3 || path->front().key != "stage" || path->back().key != "scale")
-    return nullptr;
-  const auto stage = std::ranges::find(scenario.stages, (*path)[1].key, &Stage::name);
-  return stage == scenario.stages.end() || stage->kind != record::StageKind::shake ? nullptr : &*stage;
-}
-
 /// The first of the values that seems to be a peak, or a per cent.
 void warn_of_values(const Stage& stage, const GroundMotion& motion, const VarySpec& axis, std::size_t key,
                     std::vector<std::string>& warnings) {
@@ -228,6 +219,14 @@ void warn_of_values(const Stage& stage, const GroundMotion& motion, const VarySp
 }
 
 }  // namespace
+
+const Stage* stage_of_scale(const Scenario& scenario, const std::string& key) {
+  const auto path = parse_key_path(key);
+  if (!path || path->size() != 3 || path->front().key != "stage" || path->back().key != "scale")
+    return nullptr;
+  const auto stage = std::ranges::find(scenario.stages, (*path)[1].key, &Stage::name);
+  return stage == scenario.stages.end() || stage->kind != record::StageKind::shake ? nullptr : &*stage;
+}
 
 void add_shaking_warnings(const Scenario& scenario, const std::vector<GroundMotion>& motions,
                           std::vector<std::string>& warnings) {

@@ -17,6 +17,9 @@ void add_shaking_warnings(const Scenario& scenario, const std::vector<loading::G
 std::vector<GroundFact> earthquake_facts(const Scenario& scenario,
                                          const std::vector<loading::GroundMotion>& motions);
 
+/// The shaking stage whose scale a key path leads to, `stage.shaken.scale`, or null.
+const record::Stage* stage_of_scale(const Scenario& scenario, const std::string& key);
+
 /// Scales in a study that seem to be peaks, or per cents.
 void add_study_scale_warnings(const Scenario& scenario, const std::vector<loading::GroundMotion>& motions,
                               std::vector<std::string>& warnings);

@@ -11,6 +11,8 @@ struct VarySpec {
   std::vector<std::string> keys;  ///< key paths
   std::vector<std::vector<std::string>>
       values;  ///< of every key, as TOML: `keys[j]=values[k][j]` is an override
+  /// How many of them each realization takes, in rotation (study/rotation.h); none: all.
+  std::optional<int> per_realization = {};
 
   [[nodiscard]] std::string key_text() const;                 ///< the keys, joined by " + "
   [[nodiscard]] std::string value_text(std::size_t k) const;  ///< the values of place k, joined by ", "
@@ -51,6 +53,7 @@ struct StudySpec {
   std::optional<UntilSpec> until;
   std::vector<LevelSpec> levels;  ///< empty: defaults, see study::damage_levels
   std::optional<MarginalSpec> marginal;
+  bool control = false;            ///< a run without shaking for each rock mass
   std::optional<double> map_cell;  ///< m
   Keep keep = Keep::report;
 };

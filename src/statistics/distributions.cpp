@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 namespace keyblock::statistics {
 
@@ -44,9 +46,7 @@ double incomplete_beta(double a, double b, double x) {
                                        : 1.0 - front * beta_fraction(b, a, 1.0 - x) / b;
 }
 
-}  // namespace
-
-double student_t(double confidence, int degrees) {
+double quantile_of_student(double confidence, int degrees) {
   // P(|T| > t) = I_y(ν/2, 1/2) with y = ν/(ν + t²), which rises with y.
   double low = 0.0, high = 1.0;
   for (int k = 0; k < 200; ++k) {
@@ -54,6 +54,16 @@ double student_t(double confidence, int degrees) {
     (incomplete_beta(0.5 * degrees, 0.5, y) < 1.0 - confidence ? low : high) = y;
   }
   return low > 0.0 ? std::sqrt(degrees * (1.0 - low) / low) : HUGE_VAL;
+}
+
+}  // namespace
+
+double student_t(double confidence, int degrees) {
+  // Running means and bands of curves ask for the same ones again and again.
+  static thread_local std::map<std::pair<double, int>, double> known;
+  const auto [place, is_new] = known.try_emplace({confidence, degrees}, 0.0);
+  if (is_new) place->second = quantile_of_student(confidence, degrees);
+  return place->second;
 }
 
 }  // namespace keyblock::statistics

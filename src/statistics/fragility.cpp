@@ -5,22 +5,18 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <set>
 
 #include "core/random.h"
 #include "statistics/distributions.h"
+#include "statistics/fragility_table.h"
 
 namespace keyblock::statistics {
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Intensities that differ by less than this share are one stripe.
-constexpr double same_intensity = 1e-9;
 /// Fisher scoring ends when a step is below this, in units of η.
 constexpr double step_tolerance = 1e-9;
-/// The same for resamples, which scatter by far more.
-constexpr double replicate_tolerance = 1e-5;
 constexpr int most_steps = 200, most_halvings = 40;
 /// Beyond, Φ and its complement are at the end of the floating-point range.
 constexpr double largest_eta = 35.0;
@@ -211,107 +207,51 @@ FragilityFit fit_from(std::span<const Stripe> stripes, const FragilityFit* start
   return fit;
 }
 
-/// The runs as a table: stripes, and for each cluster what it adds to them. `at_rest`: those without shaking.
-struct Table {
-  struct Part {
-    std::size_t stripe;
-    double runs, exceeded;
-  };
-  std::vector<Stripe> stripes;
-  std::vector<std::vector<Part>> clusters;
-  Stripe at_rest;
-};
-
-Stripe runs_at_rest(std::span<const Observation> runs) {
-  Stripe stripe;
-  std::set<int> clusters;
-  for (const Observation& run : runs) {
-    if (run.intensity > 0.0) continue;
-    stripe.runs += 1.0;
-    stripe.exceeded += run.exceeded ? 1.0 : 0.0;
-    clusters.insert(run.cluster);
-  }
-  stripe.clusters = static_cast<double>(clusters.size());
-  return stripe;
-}
-
-/// Without runs.
-std::vector<Stripe> empty_stripes(std::span<const Observation> runs) {
-  std::vector<double> intensities;
-  for (const Observation& run : runs)
-    if (run.intensity > 0.0) intensities.push_back(run.intensity);
-  std::sort(intensities.begin(), intensities.end());
-  std::vector<Stripe> stripes;
-  for (const double x : intensities)
-    if (stripes.empty() || x > stripes.back().intensity * (1.0 + same_intensity))
-      stripes.push_back({x, 0.0, 0.0, 0.0});
-  return stripes;
-}
-
-Table tabulate(std::span<const Observation> runs) {
-  Table table;
-  table.at_rest = runs_at_rest(runs);
-  table.stripes = empty_stripes(runs);
-  std::map<int, std::vector<Table::Part>> clusters;
-  for (const Observation& run : runs) {
-    if (!(run.intensity > 0.0)) continue;
-    const auto after = std::upper_bound(table.stripes.begin(), table.stripes.end(), run.intensity,
-                                        [](double x, const Stripe& s) { return x < s.intensity; });
-    const auto stripe = static_cast<std::size_t>(after - table.stripes.begin()) - 1;
-    table.stripes[stripe].runs += 1.0;
-    table.stripes[stripe].exceeded += run.exceeded ? 1.0 : 0.0;
-    clusters[run.cluster].push_back({stripe, 1.0, run.exceeded ? 1.0 : 0.0});
-  }
-  for (auto& [id, parts] : clusters) {
-    std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.stripe < b.stripe; });
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      if (k == 0 || parts[k].stripe != parts[k - 1].stripe) table.stripes[parts[k].stripe].clusters += 1.0;
-    }
-    table.clusters.push_back(std::move(parts));
-  }
-  return table;
-}
-
-Estimate with_interval(double value, std::vector<double>& replicates, double confidence) {
-  const Interval interval = percentile_interval(replicates, confidence);
-  return {value, interval.low, interval.high};
-}
-
-/// θ, β and P at the intensities asked for, of every resample.
-struct Replicates {
-  std::vector<double> theta, beta;
-  std::vector<std::vector<double>> probability;
-  std::size_t fitted = 0;
-};
-
-/// A replicate that is no number knows nothing.
-void add_known(std::vector<double>& replicates, double x) {
-  if (!std::isnan(x)) replicates.push_back(x);
-}
-
-Replicates replicated(const Table& table, const FragilityFit& fit, std::span<const double> at,
-                      std::size_t resamples) {
-  const Resamples draws(table.clusters.size(), resamples);
-  Replicates found;
-  found.probability.resize(at.size());
+template <class Key>
+std::vector<FragilityFit> fits_without(const FragilityTable& table,
+                                       const std::map<Key, FragilityParts>& groups,
+                                       const FragilityFit& whole) {
+  std::vector<FragilityFit> fits;
   std::vector<Stripe> stripes = table.stripes;
-  for (std::size_t r = 0; r < resamples; ++r) {
-    for (Stripe& s : stripes) s.runs = s.exceeded = 0.0;
-    for (const std::uint32_t c : draws.ranks(r)) {
-      for (const Table::Part& part : table.clusters[c]) {
-        stripes[part.stripe].runs += part.runs;
-        stripes[part.stripe].exceeded += part.exceeded;
-      }
+  for (const auto& [key, parts] : groups) {
+    for (const FragilityPart& part : parts) {
+      stripes[part.stripe].runs -= part.runs;
+      stripes[part.stripe].exceeded -= part.exceeded;
     }
-    const FragilityFit again = fit_from(stripes, &fit, replicate_tolerance);
-    if (again.status == FragilityStatus::fitted) ++found.fitted;
-    if (again.status != FragilityStatus::separated) {
-      add_known(found.theta, again.theta);
-      add_known(found.beta, again.beta);
-    }
-    for (std::size_t k = 0; k < at.size(); ++k) add_known(found.probability[k], again.probability(at[k]));
+    fits.push_back(fit_from(stripes, &whole, step_tolerance));
+    for (const FragilityPart& part : parts) stripes[part.stripe] = table.stripes[part.stripe];
   }
-  return found;
+  return fits;
+}
+
+FragilityRefits refitted(const FragilityTable& table, const FragilityFit& whole) {
+  FragilityRefits refits{fits_without(table, table.clusters, whole), {}, {}};
+  if (table.records.size() < 2) return refits;
+  refits.records = fits_without(table, table.records, whole);
+  refits.pairs = fits_without(table, table.pairs, whole);
+  return refits;
+}
+
+double log_theta(const FragilityFit& fit) {
+  return fit.status == FragilityStatus::fitted ? std::log(fit.theta) : not_a_number;
+}
+
+double log_beta(const FragilityFit& fit) {
+  return fit.status == FragilityStatus::fitted ? std::log(fit.beta) : not_a_number;
+}
+
+template <class Of>
+Estimate interval_of(const FragilityCurve& curve, const Of& of, double confidence) {
+  return two_way_interval(of(curve.fit), curve.refits.numbers(of), confidence);
+}
+
+Estimate exponential(const Estimate& e) {
+  return {std::exp(e.value), std::exp(e.low), std::exp(e.high)};
+}
+
+Estimate probability_of(const Estimate& eta) {
+  const auto of = [](double x) { return std::isnan(x) ? not_a_number : normal_cdf(x); };
+  return {of(eta.value), of(eta.low), of(eta.high)};
 }
 
 bool spans_more(const Estimate& e, double factor) {
@@ -327,8 +267,9 @@ FragilityStatus judged(const FragilityCurve& curve, const FragilityLimits& limit
     return FragilityStatus::exceeded_at_rest;
   if (status != FragilityStatus::fitted) return status;
   if (curve.clusters < smallest_bootstrap_sample) return FragilityStatus::too_few_clusters;
-  if (static_cast<double>(curve.resamples_fitted) <
-      limits.fitted_share * static_cast<double>(curve.resamples))
+  const auto has_none = [](const FragilityFit& fit) { return fit.status != FragilityStatus::fitted; };
+  if (std::ranges::any_of(curve.refits.rocks, has_none) ||
+      std::ranges::any_of(curve.refits.records, has_none))
     return FragilityStatus::few_fits;
   if (spans_more(curve.theta, limits.widest_theta)) return FragilityStatus::wide_theta;
   if (spans_more(curve.beta, limits.widest_beta)) return FragilityStatus::wide_beta;
@@ -342,31 +283,34 @@ FragilityFit fit_fragility(std::span<const Stripe> stripes) {
 }
 
 FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<const double> at,
-                               double confidence, const FragilityLimits& limits, std::size_t resamples) {
-  const Table table = tabulate(runs);
+                               double confidence, const FragilityLimits& limits) {
+  const FragilityTable table = tabulate(runs);
   FragilityCurve curve;
   curve.stripes = table.stripes;
   curve.clusters = table.clusters.size();
+  curve.records = table.records.size();
   curve.at_rest = table.at_rest;
   curve.fit = fit_fragility(table.stripes);
-  Replicates found;
+  const ShakenPairs shaken = shaken_pairs(table);
+  curve.pairs = shaken.pairs.size();
+  curve.not_monotone = shaken.not_monotone;
   if (curve.fit.status == FragilityStatus::fitted) {
     curve.theta.value = curve.fit.theta;
     curve.beta.value = curve.fit.beta;
     if (curve.clusters >= smallest_bootstrap_sample) {
-      found = replicated(table, curve.fit, at, resamples);
-      curve.resamples = resamples;
-      curve.resamples_fitted = found.fitted;
-      curve.theta = with_interval(curve.fit.theta, found.theta, confidence);
-      curve.beta = with_interval(curve.fit.beta, found.beta, confidence);
+      curve.refits = refitted(table, curve.fit);
+      curve.theta = exponential(interval_of(curve, log_theta, confidence));
+      curve.beta = exponential(interval_of(curve, log_beta, confidence));
     }
   }
   curve.status = judged(curve, limits);
   if (curve.status != FragilityStatus::fitted) return curve;
+  curve.split = split_of(table, curve, shaken, confidence);
   curve.intensity.assign(at.begin(), at.end());
-  for (std::size_t k = 0; k < at.size(); ++k)
-    curve.probability.push_back(
-        with_interval(curve.fit.probability(at[k]), found.probability[k], confidence));
+  for (const double x : at) {
+    const auto eta = [&](const FragilityFit& fit) { return (std::log(x) - log_theta(fit)) / fit.beta; };
+    curve.probability.push_back(probability_of(interval_of(curve, eta, confidence)));
+  }
   return curve;
 }
 

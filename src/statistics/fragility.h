@@ -5,6 +5,7 @@
 
 #include "statistics/bootstrap.h"
 #include "statistics/interval.h"
+#include "statistics/two_way.h"
 
 /// Fragility: the probability P(x) that damage exceeds a level under shaking of intensity x, as a lognormal curve
 ///
@@ -38,7 +39,7 @@ enum class FragilityStatus {
   /// The fit stands, or does not matter, but it is no curve to be shown (FragilityLimits):
   exceeded_at_rest,  ///< too many exceed the level without shaking, where P(0) = 0
   too_few_clusters,  ///< fewer than smallest_bootstrap_sample: nobody knows how sure θ and β are
-  few_fits,          ///< too many resamples have none: it hangs on single clusters
+  few_fits,          ///< without one of the rock masses or records there is none: it hangs on that one
   wide_theta,        ///< the interval of θ spans too much
   wide_beta,         ///< the interval of β does
 };
@@ -66,6 +67,7 @@ struct Observation {
   double intensity = 0.0;
   bool exceeded = false;
   int cluster = 0;  ///< the realization: the same rock at all intensities, hence not independent
+  int record = 0;   ///< the earthquake: the same for many rock masses, hence not independent either
 };
 
 /// Beyond these a fit is no curve to be shown. Why so: docs/study-report.md.
@@ -73,14 +75,36 @@ struct FragilityLimits {
   double widest_theta = 4.0;    ///< upper over lower end of the interval of θ
   double widest_beta = 4.0;     ///< the same of β
   double share_at_rest = 0.05;  ///< of the runs without shaking that exceed the level
-  double fitted_share = 0.75;   ///< of the resamples that have a fit, at least
 };
 
-/// The fit with its band. The bootstrap draws whole clusters, so that what the runs of one realization have in common does not make
-/// the band too narrow. Resamples without a fit enter the band with their step or constant. The intervals of θ and β have those
-/// that do not increase, or exceed never or always, with the limits that they go to (FragilityFit); separated ones, whose θ
-/// and β may be anything up to a limit, are left out. Where all runs together give no fit, or with fewer than
-/// smallest_bootstrap_sample clusters, there is neither band nor interval.
+/// What of β² is from rock to rock, from record to record, and of the single pair (split.h). Each may come out below zero, where it
+/// is small: it is 0 then, with its interval. Intervals are by rock masses and records alone, on the safe side.
+struct Split {
+  Estimate rock, record, rest;  ///< σ
+};
+/// A split of fewer than these says hardly anything.
+inline constexpr std::size_t smallest_split_rocks = 20, smallest_split_records = 8;
+/// Fewer records than these give intervals that are wide for want of records.
+inline constexpr std::size_t few_records = 5;
+
+/// Fits without one rock mass, one record, one pair.
+struct FragilityRefits {
+  std::vector<FragilityFit> rocks, records, pairs;
+  /// A number of each of them.
+  template <class Of>
+  [[nodiscard]] LeftOut numbers(const Of& of) const {
+    const auto each = [&](const std::vector<FragilityFit>& fits) {
+      std::vector<double> found;
+      for (const FragilityFit& fit : fits) found.push_back(of(fit));
+      return found;
+    };
+    return {each(rocks), each(records), each(pairs)};
+  }
+};
+
+/// The fit with its band, by the two-way jackknife (two_way.h): intervals of ln θ, of ln β, and at each x of (ln x − ln θ)/β. With one
+/// record they are for this record alone. Where all runs together give no fit, or with fewer than smallest_bootstrap_sample rock masses,
+/// there is neither band nor interval.
 struct FragilityCurve {
   FragilityFit fit;
   FragilityStatus status =
@@ -90,12 +114,14 @@ struct FragilityCurve {
   Stripe at_rest;                     ///< the runs without shaking: ln 0 is no place on the curve
   std::vector<double> intensity;      ///< as asked for; empty unless `status` is fitted
   std::vector<Estimate> probability;  ///< there, pointwise band
-  std::size_t clusters = 0;
-  std::size_t resamples = 0, resamples_fitted = 0;
+  std::size_t clusters = 0, records = 0;
+  FragilityRefits refits;
+  Split split;  ///< no numbers: too few rock masses or records, or pairs that lack an intensity
+  /// Pairs that exceed the level at an intensity and not at a stronger one, of `pairs`.
+  std::size_t not_monotone = 0, pairs = 0;
 };
 
 FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<const double> at,
-                               double confidence, const FragilityLimits& limits = {},
-                               std::size_t resamples = usual_resamples);
+                               double confidence, const FragilityLimits& limits = {});
 
 }  // namespace keyblock::statistics

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 // Places of runs by realization, then combination, then variant, in the orders of the axes.
 std::vector<std::size_t> sorted_places(const Plan& plan) {
   using Rank = std::tuple<int, std::vector<std::size_t>, std::size_t>;
-  static const std::vector<std::string> variants{"", "friction-", "friction+", "released"};
+  static const std::vector<std::string> variants{"", "friction-", "friction+", "released", unshaken_variant};
   const auto rank = [&](const PlannedRun& run) {
     std::vector<std::size_t> combination;
     for (std::size_t a = 0; a < std::min(plan.axes.size(), run.values.size()); ++a) {
@@ -40,7 +40,7 @@ std::vector<std::size_t> sorted_places(const Plan& plan) {
 std::vector<std::string> planned_variants(const Plan& plan) {
   std::vector<std::string> found;
   for (const PlannedRun& run : plan.runs) {
-    if (run.wanted && !run.variant.empty() &&
+    if (run.wanted && !run.variant.empty() && run.variant != unshaken_variant &&
         std::find(found.begin(), found.end(), run.variant) == found.end())
       found.push_back(run.variant);
   }
@@ -108,13 +108,22 @@ StudyData study_data(const Plan& plan, StudyFiles files) {
   study.grid = plan.grid;
   study.outlines = plan.outlines;
   for (const scenario::GroundFact& fact : plan.ground) study.ground.emplace_back(fact.name, fact.value);
+  study.control = plan.control;
+  std::vector<std::ptrdiff_t> place(plan.runs.size(), -1);  // in study.runs
+  std::vector<std::size_t> taken;                           // places in the plan
   for (const std::size_t k : sorted_places(plan)) {
     if (!files.asked(plan.runs[k])) continue;
     ++study.planned;
     RunState& state = files.states[k];
-    if (state.kind == RunState::Kind::done || state.kind == RunState::Kind::failed)
-      study.runs.push_back(std::move(state.result));
+    if (state.kind != RunState::Kind::done && state.kind != RunState::Kind::failed) continue;
+    place[k] = static_cast<std::ptrdiff_t>(study.runs.size());
+    taken.push_back(k);
+    study.runs.push_back(std::move(state.result));
   }
+  if (!plan.control) return study;
+  const std::vector<std::ptrdiff_t> controls = control_places(plan);
+  for (const std::size_t k : taken)
+    study.control_of.push_back(controls[k] < 0 ? -1 : place[static_cast<std::size_t>(controls[k])]);
   return study;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "record/energy_warnings.h"
@@ -50,8 +51,24 @@ std::string curve_line(const StudyData& study, const FragilityGroup& group) {
   const auto interval = [](const statistics::Estimate& e) {
     return fmt::format("{:.3g} ({:.3g} … {:.3g})", e.value, e.low, e.high);
   };
-  return text + fmt::format("median θ {} {}, β {}", interval(group.curve.theta), intensity.unit,
-                            interval(group.curve.beta));
+  std::string line =
+      text + fmt::format("median θ {} {}, β {}, {}", interval(group.curve.theta), intensity.unit,
+                         interval(group.curve.beta), for_which_records(group.curve));
+  const statistics::Split& split = group.curve.split;
+  if (!std::isnan(split.rock.value))
+    line += fmt::format("; σ of rock {:.2g}, of record {:.2g}, of the rest {:.2g}", split.rock.value,
+                        split.record.value, split.rest.value);
+  return line;
+}
+
+/// Empty where gravity had brought down what it could before the shaking.
+std::string control_line(const Summary& summary) {
+  const ControlSummary& control = summary.control;
+  if (control.falling == 0) return {};
+  return fmt::format(
+      "in {} of {} realizations more than {:.3g} m2 came down in the run without shaking: gravity, which is "
+      "taken off; a rest before the shaking with until = \"still\" lets it come down before",
+      control.falling, control.realizations, control.threshold);
 }
 
 /// Empty where the balance of all runs closes.
@@ -76,6 +93,7 @@ std::vector<std::string> findings(const StudyData& study, const Summary& summary
       if (!c.runs.empty()) lines.push_back(level_line(study, c, l));
   for (const FragilityGroup& group : summary.fragility)
     if (group.intensity == 0) lines.push_back(curve_line(study, group));
+  if (std::string line = control_line(summary); !line.empty()) lines.push_back(std::move(line));
   if (std::string line = balance_line(study); !line.empty()) lines.push_back(std::move(line));
   return lines;
 }

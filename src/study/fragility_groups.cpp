@@ -67,18 +67,22 @@ Observations observed(const StudyData& study, const Summary& summary, const Grou
   const bool all_counts = study.since.empty() && !study.before.empty();
   Observations runs;
   std::set<int> seen;
-  const auto add = [&](double x, const record::Damage& damage, int realization) {
+  std::map<std::string, int> records;
+  const auto add = [&](double x, const record::Damage& damage, int realization, const std::string& record) {
     const double value = measure.of(damage);
-    if (!std::isnan(value)) runs.push_back({x, value > threshold, realization});
+    const int place = records.try_emplace(record, static_cast<int>(records.size())).first->second;
+    if (!std::isnan(value)) runs.push_back({x, value > threshold, realization, place});
   };
   for (const std::size_t c : group.combinations) {
     for (const std::size_t r : summary.combinations[c].runs) {
       const RunResult& run = study.runs[r];
       const Measured m = measured(study, run);
       const double x = m.intensity[intensity];
-      add(x, *m.damage, run.realization);
+      if (std::isnan(x)) continue;
+      add(x, *m.damage, run.realization, m.record);
       if (!all_counts || !seen.insert(run.realization).second || x == 0.0) continue;
-      if (const auto before = damage_between(run, "", study.before)) add(0.0, *before, run.realization);
+      if (const auto before = damage_between(run, "", study.before))
+        add(0.0, *before, run.realization, m.record);
     }
   }
   return runs;
@@ -99,7 +103,7 @@ std::vector<FragilityGroup> fragility_groups(const StudyData& study, const Summa
   std::vector<Group> groups = grouped(summary);
   for (std::size_t l = 0; l < study.levels.size(); ++l) {
     if (!find_measure(study.levels[l].measure)) continue;
-    for (std::size_t i = 0; i < intensities().size(); ++i) {
+    for (const std::size_t i : known_intensities(study)) {
       for (Group& group : groups) {
         std::stable_sort(
             group.combinations.begin(), group.combinations.end(),

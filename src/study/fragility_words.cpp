@@ -46,7 +46,28 @@ std::string why_wide(const char* what, const statistics::Estimate& e, const std:
                      100.0 * confidence, what, number(e.low), with_unit(e.high, unit), factor);
 }
 
+std::string why_few_fits(const statistics::FragilityCurve& curve) {
+  const auto has_none = [](const statistics::FragilityFit& fit) {
+    return fit.status != FragilityStatus::fitted;
+  };
+  const auto count = [&](const std::vector<statistics::FragilityFit>& fits) {
+    return std::ranges::count_if(fits, has_none);
+  };
+  const auto rocks = count(curve.refits.rocks), records = count(curve.refits.records);
+  const std::string of = rocks == 0 ? fmt::format("{} of {} records", records, curve.refits.records.size())
+                                    : fmt::format("{} of {} realizations", rocks, curve.refits.rocks.size());
+  return fmt::format("it hangs on single ones: {} cannot be left out", of);
+}
+
 }  // namespace
+
+std::string for_which_records(const statistics::FragilityCurve& curve) {
+  if (curve.records == 1) return "for this record only";
+  if (curve.records < statistics::few_records)
+    return fmt::format("over {} records, which are few: the intervals are wide for that reason",
+                       curve.records);
+  return fmt::format("over {} records", curve.records);
+}
 
 std::string why_no_curve(const StudyData& study, const FragilityGroup& group) {
   const statistics::FragilityCurve& curve = group.curve;
@@ -75,9 +96,7 @@ std::string why_no_curve(const StudyData& study, const FragilityGroup& group) {
       return fmt::format("{} realizations are too few for an interval of the median; {} give one",
                          curve.clusters, statistics::smallest_bootstrap_sample);
     case FragilityStatus::few_fits:
-      return fmt::format(
-          "{:.0f} % of the bootstrap resamples have none, so that it hangs on single realizations",
-          100.0 - 100.0 * static_cast<double>(curve.resamples_fitted) / static_cast<double>(curve.resamples));
+      return why_few_fits(curve);
     case FragilityStatus::wide_theta:
       return why_wide("the median θ", curve.theta, intensity.unit, limits.widest_theta, study.confidence);
     case FragilityStatus::wide_beta:

@@ -91,13 +91,33 @@ void MeasureObserver::contacts(const record::ContactFrame& frame) {
   if (mechanism_.is_known()) mechanism_.contacts = frame.contacts;
 }
 
+void MeasureObserver::add_record(const record::Stage& stage, StageMeasures& measures) const {
+  if (stage.kind != record::StageKind::shake || stage.motion < 0 || at(stage.motion) >= records_.size())
+    return;
+  const auto& [name, record] = records_[at(stage.motion)];
+  const double scale = std::abs(stage.scale);
+  measures.record = name;
+  measures.pga_rotd50 = scale * record.pga;
+  measures.pgv_rotd50 = scale * record.pgv;
+  measures.sa_03_rotd50 = scale * record.sa_03;
+  measures.sa_10_rotd50 = scale * record.sa_10;
+}
+
 void MeasureObserver::stage_end(int index, const record::StageRecord& stage) {
   if (stage.moving.empty()) mechanism_ = {};
   if (stage.interrupted) return;
-  result_.stages.push_back({stage.stage.name, stage.stage.kind, stage.pga, stage.pgv, stage.arias,
-                            stage.damage,
-                            record::standing_of(stage, loosened_, !model_.excavation_names.empty()),
-                            stage.movers, name_of(stage.movers.heaviest)});
+  StageMeasures measures;
+  measures.name = stage.stage.name;
+  measures.kind = stage.stage.kind;
+  measures.pga = stage.pga;
+  measures.pgv = stage.pgv;
+  measures.arias = stage.arias;
+  measures.damage = stage.damage;
+  measures.standing = record::standing_of(stage, loosened_, !model_.excavation_names.empty());
+  measures.movers = stage.movers;
+  measures.heaviest = name_of(stage.movers.heaviest);
+  add_record(stage.stage, measures);
+  result_.stages.push_back(std::move(measures));
   fallen_ = stage.fallen;
   std::vector<int> fell(blocks_, -1);
   for (const record::FallenBlock& block : fallen_)

@@ -31,13 +31,22 @@ std::optional<std::size_t> find_measure(std::string_view name);
 std::optional<record::Damage> damage_between(const RunResult& run, std::string_view since,
                                              std::string_view stage);
 
+/// The same, less what happened in the control run: what the shaking did. Measures may be negative, where rock that gravity would have
+/// brought down stayed. The largest fallen block and the depths are those of the blocks that fell in this run alone.
+std::optional<record::Damage> damage_beyond(const RunResult& run, const RunResult& control,
+                                            std::string_view since, std::string_view stage);
+
+inline constexpr std::size_t intensity_count = 7;
+
 /// Kinds of intensity of shaking.
 struct Intensity {
   std::string name;   ///< "pga_m_s2"
   std::string title;  ///< "PGA"
   std::string unit;   ///< "m/s²"
   double StageMeasures::*of;
-  int power;  ///< it goes with this power of the amplitude of a motion
+  int power;              ///< it goes with this power of the amplitude of a motion
+  std::string kind;       ///< as hazard curves name it: "PGA"
+  std::string component;  ///< of what shaking: "section", the vector in the section, up included
 };
 std::span<const Intensity> intensities();
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "core/atomic_file.h"
 #include "core/hash.h"
@@ -15,6 +16,8 @@
 #include "scenario/override.h"
 #include "scenario/parse.h"
 #include "scenario/sections.h"
+#include "scenario/shaking_checks.h"
+#include "study/rotation.h"
 #include "study/variant.h"
 
 namespace keyblock::study {
@@ -76,7 +79,8 @@ void read_all(const Scenario& base, Plan& plan, std::vector<std::string>* warnin
 
 void check_count(const Plan& plan, const Scenario& scenario, std::size_t variants) {
   double count = static_cast<double>(plan.realizations) * static_cast<double>(variants);
-  for (const scenario::VarySpec& axis : plan.axes) count *= static_cast<double>(axis.values.size());
+  for (const scenario::VarySpec& axis : plan.axes)
+    count *= axis.per_realization ? *axis.per_realization : static_cast<double>(axis.values.size());
   if (count <= most_runs) return;
   throw InputError(Diagnostic{scenario.where("study"), "study", fmt::format("{:.3g} runs", count),
                               fmt::format("at most {:.0e}", most_runs), ""});
@@ -98,21 +102,83 @@ std::vector<std::vector<std::vector<std::string>>> combinations(const std::vecto
   return all;
 }
 
-void list_runs(Plan& plan, const std::vector<std::string>& variants) {
-  std::vector<PlannedRun> one_realization;
-  std::vector<std::string> hashes;
-  for (const auto& values : combinations(plan.axes)) {
-    for (const std::string& variant : variants) {
-      one_realization.push_back({"", 0, values, variant, true});
-      hashes.push_back(combination_hash(overrides_of(plan, one_realization.back()),
-                                        variant_identity(variant, plan.marginal.value_or(MarginalCheck{}))));
-    }
+/// By axis: all its keys are scales of shaking after `since`, so that its values are alike where nothing shakes.
+std::vector<bool> axes_of_scales(const Plan& plan, const Scenario& scenario) {
+  std::vector<bool> result;
+  for (const scenario::VarySpec& axis : plan.axes) {
+    result.push_back(std::ranges::all_of(axis.keys, [&](const std::string& key) {
+      const record::Stage* stage = scenario::stage_of_scale(scenario, key);
+      return stage != nullptr && shakes_after(scenario, *stage, plan.since);
+    }));
   }
+  return result;
+}
+
+/// The runs of one realization, the keys without it.
+class Realization {
+ public:
+  Realization(const Plan& plan, const Scenario& scenario)
+      : plan_(plan), terms_(variant_terms(plan)), of_scales_(axes_of_scales(plan, scenario)) {}
+
+  std::vector<PlannedRun> runs(const std::vector<std::string>& variants) {
+    for (const auto& values : combinations(plan_.axes)) {
+      const std::string control = plan_.control ? control_of(values) : "";
+      for (const std::string& variant : variants) {
+        runs_.push_back({"", 0, values, variant, true, variant.empty() ? control : ""});
+        runs_.back().key = hash_of(runs_.back());
+      }
+    }
+    return std::move(runs_);
+  }
+
+ private:
+  std::string hash_of(const PlannedRun& run) const {
+    return combination_hash(overrides_of(plan_, run), variant_identity(run.variant, terms_));
+  }
+
+  /// Its key; lists it where it is the first time that it is asked for.
+  std::string control_of(std::vector<std::vector<std::string>> values) {
+    for (std::size_t a = 0; a < values.size(); ++a)
+      if (of_scales_[a]) values[a].assign(values[a].size(), "0");
+    PlannedRun run{"", 0, std::move(values), unshaken_variant, true};
+    run.key = hash_of(run);
+    if (known_.insert(run.key).second) runs_.push_back(run);
+    return run.key;
+  }
+
+  const Plan& plan_;
+  VariantTerms terms_;
+  std::vector<bool> of_scales_;
+  std::vector<PlannedRun> runs_;
+  std::set<std::string> known_;  ///< keys of control runs
+};
+
+/// Whether the realization has this run: its values are those of its turn.
+bool is_its_turn(const Plan& plan, const PlannedRun& run, int realization) {
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
+    const scenario::VarySpec& axis = plan.axes[a];
+    if (!axis.per_realization) continue;
+    const auto place =
+        static_cast<std::size_t>(std::ranges::find(axis.values, run.values[a]) - axis.values.begin());
+    const auto count = static_cast<std::size_t>(*axis.per_realization);
+    if (!takes_value(static_cast<std::size_t>(realization), place, axis.values.size(), count)) return false;
+  }
+  return true;
+}
+
+void list_runs(Plan& plan, const Scenario& scenario, const std::vector<std::string>& variants) {
+  const std::vector<PlannedRun> all = Realization(plan, scenario).runs(variants);
   for (int realization = 0; realization < plan.realizations; ++realization) {
-    for (std::size_t k = 0; k < one_realization.size(); ++k) {
-      plan.runs.push_back(one_realization[k]);
+    std::set<std::string_view> controls;
+    for (const PlannedRun& run : all)
+      if (!run.control.empty() && is_its_turn(plan, run, realization)) controls.insert(run.control);
+    for (const PlannedRun& run : all) {
+      const bool is_control = run.variant == unshaken_variant;
+      if (is_control ? !controls.contains(run.key) : !is_its_turn(plan, run, realization)) continue;
+      plan.runs.push_back(run);
       plan.runs.back().realization = realization;
-      plan.runs.back().key = key_of(realization, hashes[k]);
+      plan.runs.back().key = key_of(realization, run.key);
+      if (!run.control.empty()) plan.runs.back().control = key_of(realization, run.control);
     }
   }
 }
@@ -152,7 +218,33 @@ void check_order(const scenario::Scenario& scenario, const Plan& plan) {
   }
 }
 
+/// A control run is compared with one that is shaken.
+void check_shakes(const Scenario& scenario, const Plan& plan) {
+  for (const record::Stage& stage : scenario.stages) {
+    if (shakes_after(scenario, stage, plan.since)) return;
+    if (stage.name == plan.stage) break;
+  }
+  throw InputError(Diagnostic{scenario.where("study.control"), "study.control", "true where nothing shakes",
+                              "a stage of kind \"shake\" between `since` and `stage`", ""});
+}
+
 }  // namespace
+
+VariantTerms variant_terms(const Plan& plan) {
+  return {plan.marginal.value_or(MarginalCheck{}), plan.since};
+}
+
+std::vector<std::ptrdiff_t> control_places(const Plan& plan) {
+  std::map<std::string_view, std::ptrdiff_t> place;
+  for (std::size_t k = 0; k < plan.runs.size(); ++k)
+    if (plan.runs[k].variant == unshaken_variant) place[plan.runs[k].key] = static_cast<std::ptrdiff_t>(k);
+  std::vector<std::ptrdiff_t> places;
+  for (const PlannedRun& run : plan.runs) {
+    const auto found = place.find(run.control);
+    places.push_back(found == place.end() ? -1 : found->second);
+  }
+  return places;
+}
 
 std::string input_name(const fs::path& scenario, const fs::path& file) {
   return fs::absolute(file)
@@ -305,9 +397,11 @@ Plan make_plan(const ScenarioText& source, const std::string& version, std::vect
       plan.marginal ? variants_of(scenario, {plan.stage, plan.since}) : std::vector<std::string>{""};
   if (warnings != nullptr && plan.marginal && variants.size() < variants_of(scenario, {plan.stage}).size())
     warnings->push_back(no_release_warning(plan));
-  check_count(plan, scenario, variants.size());
+  plan.control = study.control;
+  if (plan.control) check_shakes(scenario, plan);
+  check_count(plan, scenario, variants.size() + (plan.control ? 1 : 0));
   read_all(scenario, plan, warnings);
-  list_runs(plan, variants);
+  list_runs(plan, scenario, variants);
   return plan;
 }
 

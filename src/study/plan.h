@@ -9,6 +9,7 @@
 #include "scenario/ground_facts.h"
 #include "scenario/scenario.h"
 #include "study/run_result.h"
+#include "study/variant.h"
 
 namespace keyblock::study {
 
@@ -23,6 +24,7 @@ struct PlannedRun {
   /// False: an earlier plan of the same folder had it, the scenario asks for it no more. It keeps its place, so that the
   /// index of a run never changes.
   bool wanted = true;
+  std::string control = {};  ///< key of its control run (see control_places); empty: it has none
 };
 
 /// A scenario as it is written.
@@ -60,6 +62,7 @@ struct Plan {
   std::string before_shaking;
   std::vector<DamageLevel> levels;
   std::optional<MarginalCheck> marginal;
+  bool control = false;  ///< every rock mass has a run without shaking (variant.h: unshaken)
   double confidence = 0.95;
   std::optional<scenario::UntilSpec> until;
   scenario::Keep keep = scenario::Keep::report;
@@ -89,6 +92,14 @@ Plan make_plan(const ScenarioText& scenario, const std::string& version,
 /// digits) of the overrides `key=value` in the order of their text, keys and values written in one way, and of the variant. It
 /// depends neither on the other runs nor on the order of axes and values.
 std::string run_key(int realization, const std::vector<std::string>& overrides, const std::string& variant);
+
+VariantTerms variant_terms(const Plan& plan);
+
+/// Of every run that has one, the place of its control run: that of the same rock mass, without shaking. −1: none.
+///
+/// Combinations that differ in scales of shaking alone have one rock mass, and one control run; its values on axes of such
+/// scales are 0.
+std::vector<std::ptrdiff_t> control_places(const Plan& plan);
 
 /// `key=value` of every key of every axis.
 std::vector<std::string> overrides_of(const Plan& plan, const PlannedRun& run);

@@ -15,7 +15,8 @@ namespace {
 
 constexpr int most_strata = 1'000'000;
 constexpr std::size_t least_realization_digits = 4, hash_digits = 10;
-constexpr std::string_view known_variants[] = {"", "friction-", "friction+", "released", still_variant};
+constexpr std::string_view known_variants[] = {"",         "friction-",   "friction+",
+                                               "released", still_variant, unshaken_variant};
 
 bool has_only(std::string_view text, std::string_view letters) {
   return text.find_first_not_of(letters) == std::string_view::npos;

@@ -46,6 +46,7 @@ ordered_json runs_json(const std::vector<PlannedRun>& runs) {
   for (const PlannedRun& run : runs) {
     ordered_json row{{"key", run.key}, {"realization", run.realization}, {"values", run.values}};
     if (!run.variant.empty()) row["variant"] = run.variant;
+    if (!run.control.empty()) row["control"] = run.control;
     if (!run.wanted) row["wanted"] = false;
     list.push_back(std::move(row));
   }
@@ -60,6 +61,7 @@ void read_runs(const ordered_json& list, std::vector<PlannedRun>& runs) {
     row.at("realization").get_to(run.realization);
     row.at("values").get_to(run.values);
     if (row.contains("variant")) row.at("variant").get_to(run.variant);
+    if (row.contains("control")) row.at("control").get_to(run.control);
     run.wanted = !row.contains("wanted");
   }
 }
@@ -80,6 +82,7 @@ ordered_json description_json(const Plan& plan) {
   if (!plan.since.empty()) json["since"] = plan.since;
   if (!plan.before_shaking.empty()) json["before_shaking"] = plan.before_shaking;
   if (plan.strata > 0) json["strata"] = plan.strata;
+  if (plan.control) json["control"] = true;
   if (plan.until) json["until"] = until_json(*plan.until);
   if (plan.marginal)
     json["marginal"] = {{"friction", plan.marginal->friction}, {"share", plan.marginal->share}};
@@ -115,6 +118,7 @@ void read_description(const ordered_json& json, Plan& plan) {
   }
   json.at("confidence").get_to(plan.confidence);
   if (json.contains("strata")) json.at("strata").get_to(plan.strata);
+  if (json.contains("control")) json.at("control").get_to(plan.control);
   if (json.contains("until")) plan.until = read_until(json.at("until"));
   if (json.contains("marginal")) {
     plan.marginal = MarginalCheck{json.at("marginal").at("friction").get<double>(),

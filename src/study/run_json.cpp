@@ -17,7 +17,7 @@ using record::BlockStatus;
 using record::StageKind;
 using results::number;
 
-constexpr int run_format = 5;
+constexpr int run_format = 6;
 constexpr std::uint64_t largest_map = 4'000'000;  // cells
 const std::string expected_words = "the measures of a run as keyblock wrote them";
 const std::string checksum_mark = ",\"checksum\":\"";
@@ -29,6 +29,7 @@ ordered_json stage_json(const StageMeasures& stage) {
   json["standing"] = results::standing_json(stage.standing);
   json["movers"] = results::movers_json(stage.movers);
   json["heaviest_name"] = stage.heaviest;
+  json["record"] = stage.record;
   return json;
 }
 
@@ -43,6 +44,7 @@ StageMeasures read_stage(const ordered_json& json) {
   stage.standing = results::read_standing(json.at("standing")).value_or(record::Standing::unsettled);
   stage.movers = results::read_movers(json.at("movers"));
   json.at("heaviest_name").get_to(stage.heaviest);
+  json.at("record").get_to(stage.record);
   return stage;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,6 +31,12 @@ struct StageMeasures {
   record::Standing standing = record::Standing::stands;  ///< around openings, too
   record::Movers movers = {};
   std::string heaviest = {};  ///< name of the heaviest of them; empty for cut blocks
+  std::string record = {};    ///< name of the ground motion; empty where nothing shakes
+  /// RotD50 of the record, scaled (loading/intensity_measures.h); m/s², m/s. No numbers where that is not known.
+  double pga_rotd50 = std::numeric_limits<double>::quiet_NaN();
+  double pgv_rotd50 = std::numeric_limits<double>::quiet_NaN();
+  double sa_03_rotd50 = std::numeric_limits<double>::quiet_NaN();
+  double sa_10_rotd50 = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct FallenBlock {
@@ -47,7 +55,7 @@ struct RunResult {
   int realization = 0;
   std::vector<std::string> values;  ///< TOML text of the value on every axis of the study, in their order
   std::string
-      variant;  ///< of the sensitivity check: "" (the run itself), "friction-", "friction+", "released"
+      variant;  ///< of the sensitivity check: "" (the run itself), "friction-", "friction+", "released"; or "unshaken"
   std::string
       error;  ///< why it failed; empty when it is done. The rest below is then that of the stages that ended
   int blocks = 0;
@@ -118,6 +126,9 @@ struct StudyData {
   std::vector<std::vector<Vec2>> outlines;  ///< of the excavations, real coordinates
   /// What stands on the first screen of ground and loads: names and values (scenario/ground_facts.h).
   std::vector<std::pair<std::string, std::string>> ground;
+  bool control = false;  ///< what shaken runs are counted by is what they have beyond their control runs
+  /// Of each run, the place of its control run in `runs`; −1: it has none. Empty without control runs.
+  std::vector<std::ptrdiff_t> control_of = {};
   std::vector<RunResult> runs;  ///< by realization, then combination, then variant
   std::size_t planned = 0;      ///< runs of the whole plan
 };

@@ -43,7 +43,9 @@ const char* text_of(Marginal marginal) {
 class Table {
  public:
   Table(const StudyData& study, const Summary& summary)
-      : study_(study), summary_(summary), stages_(stage_names(study)), strengths_(strength_names(study)) {}
+      : study_(study), summary_(summary), stages_(stage_names(study)), strengths_(strength_names(study)) {
+    for (const std::size_t k : known_intensities(study)) intensities_.push_back(intensities()[k]);
+  }
 
   std::string text() {
     header();
@@ -78,7 +80,7 @@ class Table {
                              "unconverged_steps", "max_overlap_m", "energy_residual_ratio", "marginal"})
       field(name);
     for (const std::string& stage : stages_) {
-      for (const Intensity& i : intensities()) field(stage + "." + i.name);
+      for (const Intensity& i : intensities_) field(stage + "." + i.name);
       for (const Measure& m : measures()) field(stage + "." + m.name);
     }
     for (const std::string& strength : strengths_) field(strength);
@@ -119,16 +121,17 @@ class Table {
     for (std::size_t k = 0; k < run.stages.size() && found == nullptr; ++k)
       if (run.stages[k].name == stages_[s]) found = &run.stages[k];
     if (found == nullptr) {
-      out_.append(intensities().size() + measures().size(), ',');
+      out_.append(intensities_.size() + measures().size(), ',');
       return;
     }
-    for (const Intensity& i : intensities()) value(found->*(i.of));
+    for (const Intensity& i : intensities_) known(found->*(i.of));
     for (const Measure& m : measures()) known(m.of(found->damage));
   }
 
   const StudyData& study_;
   const Summary& summary_;
   std::vector<std::string> stages_;
+  std::vector<Intensity> intensities_;  ///< that some run has
   std::vector<std::string> strengths_;  ///< that were drawn
   std::string out_;
 };

@@ -119,7 +119,7 @@ ordered_json hangs_on_json(const Combination& c) {
 
 ordered_json combination_json(const StudyData& study, const Combination& c) {
   ordered_json json{{"values", texts(c.values)}, {"n", c.runs.size()}, {"failed", c.failed}};
-  for (std::size_t k = 0; k < intensities().size(); ++k) json[intensities()[k].name] = number(c.intensity[k]);
+  for (const std::size_t k : known_intensities(study)) json[intensities()[k].name] = number(c.intensity[k]);
   json["worst"] = key_of(study, c.worst);
   json["median"] = key_of(study, c.median);
   json["checked"] = c.checked;
@@ -164,9 +164,23 @@ ordered_json fragility_json(const StudyData& study, const Summary& summary, cons
           {"realizations", curve.clusters},
           {"without_shaking", number(curve.at_rest.runs)},
           {"exceeded_without_shaking", number(curve.at_rest.exceeded)},
-          {"resamples_fitted", curve.resamples_fitted},
+          {"records", curve.records},
+          {"which_records", why.empty() ? ordered_json(for_which_records(curve)) : ordered_json()},
+          {"sigma",
+           {{"rock", estimate(shown(curve.split.rock))},
+            {"record", estimate(shown(curve.split.record))},
+            {"rest", estimate(shown(curve.split.rest))}}},
+          {"pairs", curve.pairs},
+          {"not_monotone", curve.not_monotone},
           {"points", points},
           {"curve", band}};
+}
+
+/// Also why a run that is done is not counted.
+std::string error_of(const StudyData& study, const RunResult& run) {
+  const bool lacks_control =
+      study.control && run.error.empty() && damage_between(run, study.since, study.stage).has_value();
+  return lacks_control ? "its control run, without shaking, failed or is missing" : run.error;
 }
 
 ordered_json failed_json(const StudyData& study) {
@@ -177,7 +191,7 @@ ordered_json failed_json(const StudyData& study) {
                     {"realization", run.realization},
                     {"values", texts(run.values)},
                     {"variant", run.variant},
-                    {"error", run.error}});
+                    {"error", error_of(study, run)}});
   }
   return rows;
 }
@@ -210,8 +224,14 @@ ordered_json head(const StudyData& study, const Summary& summary) {
     levels.push_back(
         {{"name", level.name}, {"measure", level.measure}, {"threshold", number(level.threshold)}});
   ordered_json kinds = ordered_json::array();
-  for (const Intensity& i : intensities())
-    kinds.push_back({{"name", i.name}, {"title", i.title}, {"unit", i.unit}});
+  for (const std::size_t k : known_intensities(study)) {
+    const Intensity& i = intensities()[k];
+    kinds.push_back({{"name", i.name},
+                     {"title", i.title},
+                     {"unit", i.unit},
+                     {"kind", i.kind},
+                     {"component", i.component}});
+  }
   int realizations = 0;
   {
     std::vector<int> all;
@@ -246,6 +266,11 @@ ordered_json head(const StudyData& study, const Summary& summary) {
                          {"minimum", study.precision->minimum},
                          {"reached", study.precision->reached}};
   }
+  json["control"] = nullptr;
+  if (study.control)
+    json["control"] = {{"realizations", summary.control.realizations},
+                       {"still_falling", summary.control.falling},
+                       {"threshold_m2", number(summary.control.threshold)}};
   json["marginal"] = nullptr;
   if (study.marginal)
     json["marginal"] = {{"friction_degrees", study.marginal->friction},

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "core/index.h"
 #include "scenario/key_path.h"
 #include "statistics/proportion.h"
+#include "study/variant.h"
 
 namespace keyblock::study {
 
@@ -83,7 +85,15 @@ std::vector<LevelSummary> counted_levels(const StudyData& study, const Damages& 
   return levels;
 }
 
-/// What happened to the runs of a combination between the ends of two stages.
+/// What is counted of the runs of a combination.
+Damages damages_of(const StudyData& study, const Combination& c) {
+  Damages damages;
+  for (const std::size_t r : c.runs)
+    if (const auto damage = measured(study, study.runs[r]).damage) damages.push_back(*damage);
+  return damages;
+}
+
+/// What happened to them between the ends of two stages.
 Damages damages_between(const StudyData& study, const Combination& c, std::string_view since,
                         std::string_view stage) {
   Damages damages;
@@ -93,7 +103,7 @@ Damages damages_between(const StudyData& study, const Combination& c, std::strin
 }
 
 void describe_measures(const StudyData& study, ResampleStore& store, Combination& c) {
-  const Damages damages = damages_between(study, c, study.since, study.stage);
+  const Damages damages = damages_of(study, c);
   for (const Measure& measure : measures()) {
     std::vector<double> values = values_of(measure, damages);
     MeasureSummary summary;
@@ -143,7 +153,7 @@ void find_dependences(const StudyData& study, Combination& c) {
     std::vector<const Strengths*> strengths;
     std::vector<double> values;
     for (const std::size_t r : c.runs) {
-      const auto damage = damage_between(study.runs[r], study.since, study.stage);
+      const auto damage = measured(study, study.runs[r]).damage;
       const double value = damage ? measures()[*measure].of(*damage) : statistics::not_a_number;
       if (std::isnan(value)) continue;
       strengths.push_back(&study.runs[r].strengths);
@@ -209,7 +219,7 @@ std::vector<bool> shaking_axes(const StudyData& study, const std::vector<Combina
     bool shaking = std::any_of(keys.begin(), keys.end(), [](const std::string& key) {
       return ends_with(key, ".scale") || ends_with(key, ".motion");
     });
-    std::map<std::vector<std::string>, std::array<double, 3>> seen;
+    std::map<std::vector<std::string>, std::array<double, intensity_count>> seen;
     for (const Combination& c : combinations) {
       if (shaking || c.runs.empty() || a >= c.values.size()) continue;
       std::vector<std::string> others = c.values;
@@ -225,14 +235,51 @@ std::vector<bool> shaking_axes(const StudyData& study, const std::vector<Combina
 
 }  // namespace
 
+namespace {
+
+/// Without its control run nobody knows what the shaking did.
+std::optional<record::Damage> counted_damage(const StudyData& study, const RunResult& run) {
+  if (!study.control || !run.variant.empty()) return damage_between(run, study.since, study.stage);
+  const auto control = study.control_of.at(static_cast<std::size_t>(&run - study.runs.data()));
+  if (control < 0) return std::nullopt;
+  return damage_beyond(run, study.runs[static_cast<std::size_t>(control)], study.since, study.stage);
+}
+
+/// To the larger of both. What a stage that shakes does not know, nobody knows of the run.
+void raise(double& largest, double x, record::StageKind kind) {
+  if (!std::isnan(x))
+    largest = std::max(x, largest);
+  else if (kind == record::StageKind::shake)
+    largest = statistics::not_a_number;
+}
+
+}  // namespace
+
+std::vector<std::size_t> known_intensities(const StudyData& study) {
+  std::vector<std::size_t> known;
+  for (std::size_t k = 0; k < intensities().size(); ++k) {
+    const bool is_known = std::ranges::any_of(study.runs, [&](const RunResult& run) {
+      return std::ranges::any_of(
+          run.stages, [&](const StageMeasures& stage) { return !std::isnan(stage.*(intensities()[k].of)); });
+    });
+    // Those in the section are known of any motion.
+    if (is_known || intensities()[k].component == "section") known.push_back(k);
+  }
+  return known;
+}
+
 Measured measured(const StudyData& study, const RunResult& run) {
   Measured result;
-  result.damage = damage_between(run, study.since, study.stage);
+  result.damage = counted_damage(study, run);
   if (!result.damage) return result;
   for (const StageMeasures& stage : run.stages) {
     for (std::size_t k = 0; k < result.intensity.size(); ++k)
-      result.intensity[k] = std::max(result.intensity[k], stage.*(intensities()[k].of));
-    if (stage.name == study.since) result.intensity = {};
+      raise(result.intensity[k], stage.*(intensities()[k].of), stage.kind);
+    if (!stage.record.empty()) result.record += (result.record.empty() ? "" : ", ") + stage.record;
+    if (stage.name == study.since) {
+      result.intensity = {};
+      result.record.clear();
+    }
     if (stage.name == study.stage) break;
   }
   return result;
@@ -248,11 +295,11 @@ std::vector<Marginal> marginal_runs(const StudyData& study) {
   }
   std::vector<std::size_t> seen(study.runs.size(), 0);  // variants of a run that were measured
   for (const RunResult& run : study.runs) {
-    if (run.variant.empty()) continue;
+    if (run.variant.empty() || run.variant == unshaken_variant) continue;
     const Measured variant = measured(study, run);
     const auto found = own.find({run.realization, run.values});
     if (!variant.damage || found == own.end()) continue;
-    const double a = measured(study, study.runs[found->second]).damage->fallen_area;
+    const double a = damage_between(study.runs[found->second], study.since, study.stage)->fallen_area;
     const double b = variant.damage->fallen_area;
     const double change = std::abs(a - b);
     ++seen[found->second];
@@ -266,6 +313,49 @@ std::vector<Marginal> marginal_runs(const StudyData& study) {
   return result;
 }
 
+namespace {
+
+/// See ControlSummary. What has fallen in a control run is judged by the level of fallen area with the lowest threshold.
+ControlSummary control_summary(const StudyData& study) {
+  ControlSummary summary;
+  if (!study.control) return summary;
+  for (const DamageLevel& level : study.levels)
+    if (level.measure == "fallen_area_m2" && !(summary.threshold <= level.threshold))
+      summary.threshold = level.threshold;
+  if (std::isnan(summary.threshold)) summary.threshold = smallest_marginal_area;
+  std::set<int> all, falling;
+  for (const RunResult& run : study.runs) {
+    if (run.variant != unshaken_variant) continue;
+    const auto damage = damage_between(run, study.since, study.stage);
+    if (!damage) continue;
+    all.insert(run.realization);
+    if (damage->fallen_area > summary.threshold) falling.insert(run.realization);
+  }
+  summary.realizations = all.size();
+  summary.falling = falling.size();
+  return summary;
+}
+
+/// The runs of the next combination: which count, and what is known of them.
+void take_runs(const StudyData& study, const std::vector<std::size_t>& members, Summary& summary,
+               Combination& c) {
+  for (const std::size_t r : members) {
+    summary.combination_of[r] = static_cast<int>(summary.combinations.size());
+    if (!study.runs[r].variant.empty()) continue;
+    if (measured(study, study.runs[r]).damage)
+      c.runs.push_back(r);
+    else
+      ++c.failed;
+    if (summary.marginal[r] != Marginal::unknown) ++c.checked;
+    if (summary.marginal[r] == Marginal::yes) ++c.marginal;
+  }
+  std::stable_sort(c.runs.begin(), c.runs.end(), [&](std::size_t a, std::size_t b) {
+    return study.runs[a].realization < study.runs[b].realization;
+  });
+}
+
+}  // namespace
+
 Summary summarize(const StudyData& study) {
   Summary summary;
   summary.marginal = marginal_runs(study);
@@ -273,7 +363,7 @@ Summary summarize(const StudyData& study) {
   std::map<std::pair<std::vector<std::size_t>, std::vector<std::string>>, std::vector<std::size_t>> groups;
   for (std::size_t r = 0; r < study.runs.size(); ++r) {
     const RunResult& run = study.runs[r];
-    groups[{places(study, run), run.values}].push_back(r);
+    if (run.variant != unshaken_variant) groups[{places(study, run), run.values}].push_back(r);
     const bool done = measured(study, run).damage.has_value();
     ++(done ? summary.done : summary.failed);
   }
@@ -281,19 +371,7 @@ Summary summarize(const StudyData& study) {
   for (const auto& [key, members] : groups) {
     Combination c;
     c.values = key.second;
-    for (const std::size_t r : members) {
-      summary.combination_of[r] = static_cast<int>(summary.combinations.size());
-      if (!study.runs[r].variant.empty()) continue;
-      if (measured(study, study.runs[r]).damage)
-        c.runs.push_back(r);
-      else
-        ++c.failed;
-      if (summary.marginal[r] != Marginal::unknown) ++c.checked;
-      if (summary.marginal[r] == Marginal::yes) ++c.marginal;
-    }
-    std::stable_sort(c.runs.begin(), c.runs.end(), [&](std::size_t a, std::size_t b) {
-      return study.runs[a].realization < study.runs[b].realization;
-    });
+    take_runs(study, members, summary, c);
     average_intensity(study, c);
     choose_worst_and_median(study, c);
     describe_measures(study, store, c);
@@ -302,6 +380,7 @@ Summary summarize(const StudyData& study) {
     count_cells(study, c);
     summary.combinations.push_back(std::move(c));
   }
+  summary.control = control_summary(study);
   summary.shaking_axis = shaking_axes(study, summary.combinations);
   summary.fragility = fragility_groups(study, summary);
   return summary;

@@ -22,9 +22,14 @@ inline constexpr double smallest_marginal_area = 0.01;
 /// What happened to a run between the ends of StudyData::since and StudyData::stage, and the strongest shaking.
 struct Measured {
   std::optional<record::Damage> damage;  ///< none where the run failed or did not get there
-  std::array<double, 3> intensity{};     ///< as intensities(): largest over the stages between
+  /// As intensities(): largest over the stages between. No number where a stage shakes whose record does not have it.
+  std::array<double, intensity_count> intensity{};
+  std::string record;  ///< of the stages between that shake, by name
 };
 Measured measured(const StudyData& study, const RunResult& run);
+
+/// Places in intensities() of those that some run has.
+std::vector<std::size_t> known_intensities(const StudyData& study);
 
 /// yes: one variant is enough; no: all of StudyData::variants were measured, and none changes much; else unknown.
 enum class Marginal { unknown, no, yes };
@@ -50,10 +55,11 @@ struct DamagePart {
 
 /// All runs with the same value on every axis, variant "".
 struct Combination {
-  std::vector<std::string> values;           ///< as RunResult::values
-  std::vector<std::size_t> runs;             ///< those measured: places in StudyData::runs, by realization
-  std::size_t failed = 0;                    ///< those with an error, or without the stage
-  std::array<double, 3> intensity{};         ///< mean over the runs; all alike unless the motion varies
+  std::vector<std::string> values;  ///< as RunResult::values
+  std::vector<std::size_t> runs;    ///< those measured: places in StudyData::runs, by realization
+  std::size_t failed = 0;           ///< those with an error, or without the stage
+  std::array<double, intensity_count>
+      intensity{};                           ///< mean over the runs; all alike unless the motion varies
   std::optional<std::size_t> worst, median;  ///< runs with the largest and with the middle fallen area
   std::size_t checked = 0, marginal = 0;  ///< runs of which it is known, and those of them that are marginal
   std::vector<MeasureSummary> measures;   ///< as measures()
@@ -82,15 +88,23 @@ struct FragilityGroup {
   statistics::FragilityCurve curve;
 };
 
+/// What came down in the control runs between the ends of StudyData::since and StudyData::stage, where nothing shook.
+struct ControlSummary {
+  std::size_t realizations = 0;  ///< with a control run; 0 in a study without any
+  std::size_t falling = 0;       ///< of these, where more than `threshold` fell: gravity was not done
+  double threshold = statistics::not_a_number;  ///< m²
+};
+
 struct Summary {
   std::vector<Combination> combinations;  ///< in the order of the axes, the last one running fastest
   /// By axis: all its keys are of stages or motions, and end in .scale or .motion or change an intensity. An axis that
   /// changes the rock as well is none.
   std::vector<bool> shaking_axis;
   std::vector<FragilityGroup>
-      fragility;                     ///< by level, intensity, group; empty where no axis changes the shaking
-  std::vector<Marginal> marginal;    ///< by run; that of variants is unknown
-  std::vector<int> combination_of;   ///< by run; variants have that of their run
+      fragility;                    ///< by level, intensity, group; empty where no axis changes the shaking
+  std::vector<Marginal> marginal;   ///< by run; that of variants is unknown
+  std::vector<int> combination_of;  ///< by run; variants have that of their run, control runs −1
+  ControlSummary control;
   std::size_t done = 0, failed = 0;  ///< all runs, variants too
 };
 

@@ -52,7 +52,7 @@ scenario::Scenario scenario_of(const Plan& plan, const PlannedRun& run) {
       scenario::parse_scenario_text(plan.text, plan.scenario, overrides, scenario::StudyTable::leave_out);
   for (const fs::path& path : scenario::input_paths(scenario)) check_file(plan, path);
   scenario.strata = plan.strata;
-  apply_variant(scenario, run.variant, plan.marginal.value_or(MarginalCheck{}));
+  apply_variant(scenario, run.variant, variant_terms(plan));
   if (!run.variant.empty()) scenario.text += fmt::format("# variant {}\n", run.variant);
   return scenario;
 }
@@ -63,7 +63,12 @@ class Task {
       : plan_(plan), folder_(run_folder(directory, run.key)), result_(empty_result(run)) {}
 
   TaskOutcome run(const simulation::RunSetup& setup, const TaskOptions& options) {
-    MeasureObserver measures(result_, plan_.grid, setup.system.blocks.size(), setup.damage.loosened_distance);
+    std::vector<ShakingRecord> records;
+    for (std::size_t k = 0; k < setup.motions.size(); ++k)
+      records.push_back(
+          {setup.motions[k].name(), k < horizontal_.size() ? horizontal_[k] : loading::HorizontalMeasures{}});
+    MeasureObserver measures(result_, plan_.grid, setup.system.blocks.size(), setup.damage.loosened_distance,
+                             std::move(records));
     std::unique_ptr<results::ResultWriter> writer;
     std::unique_ptr<MemoryRecorder> memory;
     std::vector<record::RunObserver*> observers{&measures};
@@ -97,11 +102,15 @@ class Task {
   }
 
   RunResult& result() { return result_; }
+  void set_horizontal(std::vector<loading::HorizontalMeasures> measures) {
+    horizontal_ = std::move(measures);
+  }
 
  private:
   const Plan& plan_;
   fs::path folder_;
   RunResult result_;
+  std::vector<loading::HorizontalMeasures> horizontal_;  ///< of the motions
 };
 
 bool enough_without(const fs::path& directory, const Plan& plan, int realization) {
@@ -112,14 +121,22 @@ bool enough_without(const fs::path& directory, const Plan& plan, int realization
 
 }  // namespace
 
-simulation::RunSetup run_setup(const Plan& plan, const PlannedRun& run) {
-  simulation::RunSetup setup = scenario::build_setup(scenario_of(plan, run), run.realization);
+namespace {
+
+simulation::RunSetup setup_of(const Plan& plan, const PlannedRun& run, const scenario::Scenario& scenario) {
+  simulation::RunSetup setup = scenario::build_setup(scenario, run.realization);
   setup.version = plan.version;
   if (plan.keep == Keep::measures) {
     setup.output.frame_interval = setup.output.contact_interval = never;
     setup.histories.clear();
   }
   return setup;
+}
+
+}  // namespace
+
+simulation::RunSetup run_setup(const Plan& plan, const PlannedRun& run) {
+  return setup_of(plan, run, scenario_of(plan, run));
 }
 
 TaskOutcome run_task(const fs::path& directory, const Plan& plan, std::size_t index,
@@ -138,7 +155,9 @@ TaskOutcome run_task(const fs::path& directory, const Plan& plan, std::size_t in
     write_failure(directory, plan, task.result());
   };
   try {
-    simulation::RunSetup setup = run_setup(plan, run);
+    const scenario::Scenario scenario = scenario_of(plan, run);
+    task.set_horizontal(scenario::horizontal_measures(scenario));
+    simulation::RunSetup setup = setup_of(plan, run, scenario);
     setup.hooks = options.hooks;
     const TaskOutcome outcome = task.run(setup, options);
     if (outcome == TaskOutcome::interrupted) {

@@ -57,8 +57,9 @@ double excess(const std::optional<MeanInterval>& interval, const scenario::Until
 }
 
 // The measure as it is compared; nothing when the run did not come to it or does not have it.
-std::optional<double> measured(const Plan& plan, const RunResult& run) {
-  const auto damage = damage_between(run, plan.since, plan.stage);
+std::optional<double> measured(const Plan& plan, const RunResult& run, const RunResult* control) {
+  const auto damage = control == nullptr ? damage_between(run, plan.since, plan.stage)
+                                         : damage_beyond(run, *control, plan.since, plan.stage);
   if (!damage) return std::nullopt;
   const double value = record::damage_value(*damage, plan.until->measure);
   return std::isnan(value) ? std::nullopt : std::optional(value);
@@ -92,6 +93,21 @@ std::string asked_text(const scenario::UntilSpec& until) {
   return text;
 }
 
+/// The control runs of a plan, as far as they are there.
+class Controls {
+ public:
+  Controls(const Plan& plan, const std::vector<const RunResult*>& results)
+      : places_(control_places(plan)), results_(results) {}
+  [[nodiscard]] bool is_missing(std::size_t run) const { return places_[run] >= 0 && of(run) == nullptr; }
+  [[nodiscard]] const RunResult* of(std::size_t run) const {
+    return places_[run] < 0 ? nullptr : results_[static_cast<std::size_t>(places_[run])];
+  }
+
+ private:
+  std::vector<std::ptrdiff_t> places_;
+  const std::vector<const RunResult*>& results_;
+};
+
 /// Places in the plan of the runs that count, of each realization.
 std::map<int, std::vector<std::size_t>> runs_by_realization(const Plan& plan) {
   std::map<int, std::vector<std::size_t>> runs;
@@ -105,6 +121,7 @@ std::map<int, std::vector<std::size_t>> runs_by_realization(const Plan& plan) {
 
 std::optional<int> enough_realizations(const Plan& plan, const std::vector<const RunResult*>& results) {
   if (!plan.until) return std::nullopt;
+  const Controls controls(plan, results);
   std::map<AxisValues, Sums> sums;
   std::map<int, double> quantiles;  // that were needed before
   const auto quantile = [&](int count) {
@@ -114,9 +131,9 @@ std::optional<int> enough_realizations(const Plan& plan, const std::vector<const
   };
   for (const auto& [realization, runs] : runs_by_realization(plan)) {
     for (const std::size_t k : runs) {
-      if (results[k] == nullptr) return std::nullopt;
+      if (results[k] == nullptr || controls.is_missing(k)) return std::nullopt;
       Sums& sum = sums[plan.runs[k].values];
-      if (const auto value = measured(plan, *results[k])) sum.add(*value);
+      if (const auto value = measured(plan, *results[k], controls.of(k))) sum.add(*value);
     }
     if (realization + 1 < plan.until->minimum) continue;
     const bool enough = std::all_of(sums.begin(), sums.end(), [&](const auto& entry) {
@@ -129,13 +146,14 @@ std::optional<int> enough_realizations(const Plan& plan, const std::vector<const
 
 std::string lacking_precision(const Plan& plan, const std::vector<const RunResult*>& results) {
   if (!plan.until || enough_realizations(plan, results)) return {};
+  const Controls controls(plan, results);
   std::map<AxisValues, Sums> sums;
   for (std::size_t k = 0; k < plan.runs.size(); ++k) {
     const PlannedRun& run = plan.runs[k];
     if (!run.wanted || !run.variant.empty()) continue;
-    if (results[k] == nullptr) return {};
+    if (results[k] == nullptr || controls.is_missing(k)) return {};
     Sums& sum = sums[run.values];
-    if (const auto value = measured(plan, *results[k])) sum.add(*value);
+    if (const auto value = measured(plan, *results[k], controls.of(k))) sum.add(*value);
   }
   std::size_t wide = 0;
   double largest = -1.0;

@@ -74,7 +74,18 @@ void rest_until_still(std::vector<Stage>& stages) {
   stages.push_back(std::move(rest));
 }
 
+void leave_unshaken(scenario::Scenario& scenario, const std::string& since) {
+  for (Stage& stage : scenario.stages)
+    if (shakes_after(scenario, stage, since)) stage.scale = 0.0;
+}
+
 }  // namespace
+
+bool shakes_after(const scenario::Scenario& scenario, const Stage& stage, const std::string& since) {
+  const auto begin = std::ranges::find(scenario.stages, since, &Stage::name);
+  const Stage* last_before = begin == scenario.stages.end() ? nullptr : &*begin;
+  return stage.kind == StageKind::shake && (last_before == nullptr || &stage > last_before);
+}
 
 std::vector<std::string> variants_of(const scenario::Scenario& scenario,
                                      const std::vector<std::string>& compared) {
@@ -88,17 +99,19 @@ std::vector<std::string> variants_of(const scenario::Scenario& scenario,
   return variants;
 }
 
-void apply_variant(scenario::Scenario& scenario, const std::string& variant, const MarginalCheck& check) {
+void apply_variant(scenario::Scenario& scenario, const std::string& variant, const VariantTerms& terms) {
   if (variant.empty()) return;
-  if (variant == "friction-") return change_friction(scenario, -check.friction);
-  if (variant == "friction+") return change_friction(scenario, check.friction);
+  if (variant == "friction-") return change_friction(scenario, -terms.check.friction);
+  if (variant == "friction+") return change_friction(scenario, terms.check.friction);
   if (variant == "released") return release(scenario.stages);
+  if (variant == unshaken_variant) return leave_unshaken(scenario, terms.since);
   if (variant == still_variant) return rest_until_still(scenario.stages);
   throw std::invalid_argument("no variant '" + variant + "'");
 }
 
-std::string variant_identity(const std::string& variant, const MarginalCheck& check) {
-  return variant.starts_with("friction") ? fmt::format("{}{}", variant, check.friction) : variant;
+std::string variant_identity(const std::string& variant, const VariantTerms& terms) {
+  if (variant == unshaken_variant) return fmt::format("{}/{}", variant, terms.since);
+  return variant.starts_with("friction") ? fmt::format("{}{}", variant, terms.check.friction) : variant;
 }
 
 }  // namespace keyblock::study

@@ -13,22 +13,36 @@
 ///                          follows, and the settling stages from the first excavation up to it are left out: the rock is
 ///                          released at once.
 ///
+/// What gravity alone does:
+///
+///   unshaken               the scale of every stage of kind "shake" that follows the stage `since` is 0; all else, durations too, stays.
+///
 /// And of the trials of a limit:
 ///
 ///   still                  a stage of kind "rest" follows the last one, until all is still, of 30 s at most.
 namespace keyblock::study {
 
 inline constexpr const char* still_variant = "still";
+inline constexpr const char* unshaken_variant = "unshaken";
 
 /// "" and the variants that mean something: "released" when a settling stage excavates, a dynamic one follows, and none of
 /// `compared` is among those left out.
 std::vector<std::string> variants_of(const scenario::Scenario& scenario,
                                      const std::vector<std::string>& compared);
 
+/// What variants go by.
+struct VariantTerms {
+  MarginalCheck check;
+  std::string since;  ///< as Plan has it: the stage at whose end measures begin, or empty
+};
+
 /// Makes the scenario its variant.
-void apply_variant(scenario::Scenario& scenario, const std::string& variant, const MarginalCheck& check);
+void apply_variant(scenario::Scenario& scenario, const std::string& variant, const VariantTerms& terms);
+
+/// Whether the stage shakes the rock after the end of the stage `since` (empty: at any time).
+bool shakes_after(const scenario::Scenario& scenario, const record::Stage& stage, const std::string& since);
 
 /// What tells a variant from others in the key of a run: its name and how far it goes.
-std::string variant_identity(const std::string& variant, const MarginalCheck& check);
+std::string variant_identity(const std::string& variant, const VariantTerms& terms);
 
 }  // namespace keyblock::study

@@ -34,6 +34,7 @@ PAGES = [
     "docs/result-file.md",
     "docs/slopes.md",
     "docs/studies.md",
+    "docs/risk.md",
     "docs/study-report.md",
     "docs/user-guide.md",
     "docs/verification.md",

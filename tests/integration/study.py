@@ -111,6 +111,41 @@ class Runs(Study):
         for words in (("check", "two.toml"), ("study", "run", "two.toml", "-o", "out")):
             self.assertIn("two.toml: warning: study.realizations = 2: nothing is random", self.keyblock(*words).stderr)
 
+    def test_control_runs_take_off_what_gravity_brings_down(self):
+        self.write("control.toml", GALLERY + '[study]\ncontrol = true\nkeep = "measures"\n' + SCALES)
+        self.run_study("control.toml")
+        control, *shaken = [self.result(key) for key in self.keys()]
+        self.assertEqual((control["variant"], control["values"]), ("unshaken", ["0"]))
+        self.assertEqual(control["stages"][2]["pga_m_s2"], 0.0)
+        area = lambda run: run["stages"][3]["damage"]["fallen_area_m2"] - run["stages"][1]["damage"]["fallen_area_m2"]
+        study = json.loads((self.out / "study.json").read_text())
+        for run, combination in zip(shaken, study["combinations"]):
+            self.assertAlmostEqual(combination["measures"]["fallen_area_m2"]["mean"]["value"], area(run) - area(control), places=5)
+        self.assertEqual(study["control"]["realizations"], 1)
+        self.assertEqual([row["variant"] for row in self.rows()], ["", "", "unshaken"])
+        before = self.done()
+        self.run_study("control.toml", "--resume", "--set", "study.realizations=2")
+        self.assertEqual({key: time for key, time in self.done().items() if key in before}, before)
+        self.assertEqual(len(self.done()), 6)
+
+    def test_records_in_rotation_and_their_risk(self):
+        slow = '[[motion]]\nname = "slow"\nx = { amplitude = 3.0, frequency = 2.0, cycles = 1.0 }\n'
+        self.write("rotated.toml", GALLERY + slow + '[study]\nrealizations = 2\nkeep = "measures"\n[[study.vary]]\n'
+                   'key = "stage.shaken.motion"\nvalues = ["sine", "slow"]\nper_realization = 1\n')  # fmt: skip
+        self.assertNotIn("no stage uses it", self.run_study("rotated.toml").stderr)
+        self.assertEqual([self.result(key)["stages"][2]["record"] for key in self.keys()], ["sine", "slow"])
+        self.write("pga.csv", "pga,rate\n0.5,1e-1\n2,1e-2\n5,1e-3\n20,1e-5\n")
+        settings = '[[hazard]]\nfile = "pga.csv"\nintensity = "PGA"\nunit = "m/s2"\n'
+        self.write("other.toml", settings)
+        refused = self.keyblock("risk", "out", "--settings", "other.toml", expect=1).stderr
+        self.assertIn("pga.csv: found a hazard of PGA, component rotd50; expected one of those that the study has", refused)
+        self.write("risk.toml", settings + 'component = "section"\n')
+        risk = json.loads(self.keyblock("risk", "out", "--settings", "risk.toml", "--json").stdout)
+        self.assertEqual([level["level"] for level in risk["levels"]], ["light", "moderate", "severe"])
+        self.assertEqual(risk, json.loads((self.out / "risk/risk.json").read_text()))
+        self.assertEqual(len((self.out / "risk/risk.csv").read_text().splitlines()), 4)
+        self.keyblock("risk", "out", expect=1)
+
     def test_variants_of_the_check_for_marginal_results(self):
         self.write("marginal.toml", GALLERY + '[study]\nkeep = "measures"\nsince = "start"\nmarginal = {}\n')
         self.run_study("marginal.toml")

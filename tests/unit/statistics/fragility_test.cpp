@@ -2,11 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include "core/random.h"
+#include "statistics/distributions.h"
+#include "statistics/rate.h"
 
 namespace keyblock::statistics {
 namespace {
@@ -101,13 +108,14 @@ TEST(Fragility, UnitsOfIntensityDoNotMatter) {
 
 TEST(Fragility, RecoversWhatDataWereMadeFrom) {
   const std::vector<Observation> runs = made_up(5, 2000, scales, 1.5, 0.5, 0.5);
-  const FragilityCurve curve = fragility_curve(runs, scales, 0.95, {}, 200);
+  const FragilityCurve curve = fragility_curve(runs, scales, 0.95);
   EXPECT_NEAR(curve.theta.value, 1.5, 0.05);
   EXPECT_NEAR(curve.beta.value, 0.5, 0.05);
   EXPECT_LT(curve.theta.low, curve.theta.value);
   EXPECT_GT(curve.theta.high, curve.theta.value);
   EXPECT_EQ(curve.clusters, 2000U);
-  EXPECT_EQ(curve.resamples_fitted, 200U);
+  EXPECT_EQ(curve.refits.rocks.size(), 2000U);
+  EXPECT_TRUE(curve.refits.records.empty());
   for (std::size_t k = 0; k < scales.size(); ++k) {
     EXPECT_LT(curve.probability[k].low, curve.probability[k].value);
     EXPECT_GT(curve.probability[k].high, curve.probability[k].value);
@@ -116,7 +124,7 @@ TEST(Fragility, RecoversWhatDataWereMadeFrom) {
 }
 
 // What the runs of a realization have in common widens the band; the interval still covers.
-TEST(Fragility, BootstrapOverRealizationsCovers) {
+TEST(Fragility, JackknifeOverRealizationsCovers) {
   const double theta = 1.3, beta = 0.6;
   const int trials = 100;
   int covered = 0;
@@ -124,12 +132,12 @@ TEST(Fragility, BootstrapOverRealizationsCovers) {
   for (int t = 0; t < trials; ++t) {
     std::vector<Observation> runs =
         made_up(static_cast<std::uint64_t>(100 + t), 50, scales, theta, beta, 0.15);
-    const FragilityCurve curve = fragility_curve(runs, {}, 0.9, {}, 150);
+    const FragilityCurve curve = fragility_curve(runs, {}, 0.9);
     covered += curve.theta.low <= theta && theta <= curve.theta.high ? 1 : 0;
     width += curve.theta.high - curve.theta.low;
     int cluster = 0;
     for (Observation& run : runs) run.cluster = cluster++;
-    const FragilityCurve naive = fragility_curve(runs, {}, 0.9, {}, 150);
+    const FragilityCurve naive = fragility_curve(runs, {}, 0.9);
     naive_width += naive.theta.high - naive.theta.low;
   }
   EXPECT_GT(covered, 0.82 * trials);
@@ -231,26 +239,15 @@ TEST(Fragility, AnIntervalThatSpansTooMuchIsNoCurve) {
   EXPECT_EQ(fragility_curve(runs, three, 0.95, strict).status, FragilityStatus::wide_beta);
 }
 
-// A realization is in no resample of 20 with a probability of (1 − 1/20)^20 = 36 %, neither of two with 12 %.
+// Without the one that exceeds at the weakest of the shakings that some do and some do not, the curve is a step.
 TEST(Fragility, AFitThatHangsOnASingleRealizationIsNoCurve) {
   const FragilityCurve one = curve_of(exceeding({17, 2, 1}, three));
   EXPECT_EQ(one.fit.status, FragilityStatus::fitted);
-  EXPECT_NEAR(static_cast<double>(one.resamples_fitted) / 1000.0, 0.62, 0.05);
   expect_no_curve(one, FragilityStatus::few_fits);
-  const FragilityCurve two = curve_of(exceeding({1, 9, 9, 1}, three));
-  EXPECT_NEAR(static_cast<double>(two.resamples_fitted) / 1000.0, 0.88, 0.03);
-  EXPECT_EQ(two.status, FragilityStatus::fitted);
+  EXPECT_EQ(curve_of(exceeding({2, 8, 8, 2}, three)).status, FragilityStatus::fitted);
 }
 
-// Resamples whose shares do not increase have a β without end; they are not left out of its interval.
-TEST(Fragility, ResamplesThatDoNotIncreaseWidenTheIntervals) {
-  const FragilityCurve flat = curve_of(exceeding({10, 1, 1, 8}, three));
-  EXPECT_EQ(flat.fit.status, FragilityStatus::fitted);
-  EXPECT_LT(flat.resamples_fitted, 1000U);
-  EXPECT_TRUE(std::isinf(flat.beta.high));
-}
-
-TEST(Fragility, FewerRealizationsThanABootstrapNeedsAreNoCurve) {
+TEST(Fragility, FewerRealizationsThanAnIntervalNeedsAreNoCurve) {
   expect_no_curve(curve_of(exceeding({1, 1, 1, 1}, three)), FragilityStatus::too_few_clusters);
 }
 
@@ -279,14 +276,124 @@ TEST(Fragility, StripesKnowTheirClusters) {
 
 TEST(Fragility, RunsWithoutShakingAreLeftOutAndCounted) {
   std::vector<Observation> runs = made_up(9, 30, scales, 1.3, 0.6, 0.6);
-  const FragilityCurve without = fragility_curve(runs, {}, 0.95, {}, 50);
+  const FragilityCurve without = fragility_curve(runs, {}, 0.95);
   runs.push_back({0.0, false, 3});
   runs.push_back({0.0, false, 3});
-  const FragilityCurve with = fragility_curve(runs, {}, 0.95, {}, 50);
+  const FragilityCurve with = fragility_curve(runs, {}, 0.95);
   EXPECT_EQ(with.at_rest.runs, 2.0);
   EXPECT_EQ(with.at_rest.clusters, 1.0);
   EXPECT_EQ(with.theta.value, without.theta.value);
   EXPECT_EQ(with.theta.low, without.theta.low);
+}
+
+/// 24 rock masses, each under two of eight records at five intensities, of σ 0.40, 0.30 and 0.20.
+std::vector<Observation> stored_stripes() {
+  std::ifstream file(std::filesystem::path(KEYBLOCK_TEST_DATA) / "study/stripes.csv");
+  std::vector<Observation> runs;
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream words(line);
+    int exceeded = 0;
+    Observation& run = runs.emplace_back();
+    words >> run.cluster >> run.record >> run.intensity >> exceeded;
+    run.exceeded = exceeded == 1;
+  }
+  return runs;
+}
+
+// Numbers of an independent fit and jackknife, in Python.
+TEST(TwoWay, IsThatOfKnownStripes) {
+  const FragilityCurve curve = fragility_curve(stored_stripes(), {}, 0.95);
+  ASSERT_EQ(curve.status, FragilityStatus::fitted);
+  EXPECT_EQ(curve.records, 8U);
+  EXPECT_EQ(curve.refits.pairs.size(), 48U);
+  EXPECT_NEAR(curve.theta.value / 3.0203253036, 1.0, 1e-6);
+  EXPECT_NEAR(curve.beta.value / 0.4554392880, 1.0, 1e-6);
+  const TwoWayVariance theta =
+      two_way_variance(std::log(curve.fit.theta),
+                       curve.refits.numbers([](const FragilityFit& f) { return std::log(f.theta); }));
+  EXPECT_NEAR(std::sqrt(theta.total) / 0.135501154, 1.0, 1e-6);
+  EXPECT_NEAR(std::sqrt(theta.rock) / 0.081409038, 1.0, 1e-6);
+  EXPECT_NEAR(std::sqrt(theta.record) / 0.128495217, 1.0, 1e-6);
+  EXPECT_NEAR(std::sqrt(theta.pair) / 0.069122281, 1.0, 1e-6);
+  const TwoWayVariance beta = two_way_variance(
+      std::log(curve.fit.beta), curve.refits.numbers([](const FragilityFit& f) { return std::log(f.beta); }));
+  EXPECT_NEAR(std::sqrt(beta.total) / 0.140515828, 1.0, 1e-6);
+  EXPECT_NEAR(std::log(curve.theta.high / curve.theta.value), student_t(0.95, 7) * 0.135501154, 1e-6);
+  // ρ of rock 0.37834008, of record 0.45383751.
+  EXPECT_NEAR(std::pow(curve.split.rock.value / curve.beta.value, 2.0), 0.37834008, 1e-5);
+  EXPECT_NEAR(std::pow(curve.split.record.value / curve.beta.value, 2.0), 0.45383751, 1e-5);
+  EXPECT_NEAR(std::pow(curve.split.rest.value / curve.beta.value, 2.0), 1.0 - 0.37834008 - 0.45383751, 1e-5);
+  EXPECT_LE(curve.split.rock.low, curve.split.rock.value);
+  EXPECT_GE(curve.split.rock.high, curve.split.rock.value);
+}
+
+TEST(TwoWay, IntervalOfTheRateIsThatOfKnownStripes) {
+  HazardCurve hazard;
+  for (int i = 0; i < 40; ++i) {
+    const double x = 0.2 * std::pow(300.0, i / 39.0), u = std::log(x);
+    hazard.intensity.push_back(x);
+    hazard.rate.push_back(0.01 * std::exp(-1.6 * u - 0.35 * u * u));
+  }
+  const FragilityCurve curve = fragility_curve(stored_stripes(), {}, 0.95);
+  const auto log_rate = [&](const FragilityFit& f) {
+    return std::log(annual_rate(hazard, {f.theta, f.beta}).inside);
+  };
+  EXPECT_NEAR(log_rate(curve.fit), -6.360157355, 1e-6);
+  EXPECT_NEAR(
+      std::sqrt(two_way_variance(log_rate(curve.fit), curve.refits.numbers(log_rate)).total) / 0.312483493,
+      1.0, 1e-6);
+}
+
+/// Rock i under the records that it sees in rotation, two of them; σ 0.35 of the rock, 0.30 of the record, 0.20 of the pair.
+std::vector<Observation> rotated(std::uint32_t study, int rocks, int records) {
+  const auto draw = [&](int who, std::uint32_t what) {
+    return inverse_normal_cdf(RandomStream(41, study, what, static_cast<std::uint32_t>(who)).uniform(0));
+  };
+  std::vector<Observation> runs;
+  for (int i = 0; i < rocks; ++i) {
+    for (int q = 0; q < 2; ++q) {
+      const int j = (i + q * (1 + i / records % (records - 1))) % records;
+      const double capacity = 0.35 * draw(i, 1) + 0.30 * draw(j, 2) + 0.20 * draw(i * records + j, 3);
+      for (const double u : {-0.9, -0.45, 0.0, 0.45, 0.9}) runs.push_back({std::exp(u), u > capacity, i, j});
+    }
+  }
+  return runs;
+}
+
+// 95 % intervals hold θ, β and the rate of λ = x^−2 in 92 to 99 % of many studies; those over rock alone in 75 %.
+TEST(TwoWay, IntervalsCover) {
+  constexpr int studies = 150;
+  const double beta = std::sqrt(0.2525), log_rate = 2.0 * 0.2525;
+  int theta_held = 0, beta_held = 0, rate_held = 0, by_rock_alone = 0;
+  for (std::uint32_t s = 0; s < studies; ++s) {
+    std::vector<Observation> runs = rotated(s, 40, 20);
+    const FragilityCurve curve = fragility_curve(runs, {}, 0.95);
+    const auto rate_of = [](const FragilityFit& f) {
+      return -2.0 * std::log(f.theta) + 2.0 * f.beta * f.beta;
+    };
+    const Estimate rate = two_way_interval(rate_of(curve.fit), curve.refits.numbers(rate_of), 0.95);
+    theta_held += curve.theta.low <= 1.0 && 1.0 <= curve.theta.high ? 1 : 0;
+    beta_held += curve.beta.low <= beta && beta <= curve.beta.high ? 1 : 0;
+    rate_held += rate.low <= log_rate && log_rate <= rate.high ? 1 : 0;
+    for (Observation& run : runs) run.record = 0;
+    const FragilityCurve rock = fragility_curve(runs, {}, 0.95);
+    by_rock_alone += rock.theta.low <= 1.0 && 1.0 <= rock.theta.high ? 1 : 0;
+  }
+  EXPECT_GE(theta_held, 0.90 * studies);
+  EXPECT_GE(beta_held, 0.88 * studies);
+  EXPECT_GE(rate_held, 0.90 * studies);
+  EXPECT_LT(by_rock_alone, theta_held);
+  RecordProperty("theta", theta_held);
+}
+
+TEST(TwoWay, PairsThatGoBackAreCounted) {
+  const std::vector<Observation> runs{
+      {1.0, true, 0, 0}, {2.0, false, 0, 0}, {1.0, false, 0, 1}, {2.0, true, 0, 1}};
+  EXPECT_EQ(fragility_curve(runs, {}, 0.95).not_monotone, 1U);
+  EXPECT_EQ(fragility_curve(runs, {}, 0.95).pairs, 2U);
 }
 
 }  // namespace

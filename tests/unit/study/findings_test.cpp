@@ -43,9 +43,9 @@ TEST(Findings, GiveTheMedianOfACurve) {
   std::vector<std::array<double, 3>> added;
   for (int r = 0; r < 40; ++r) added.push_back({r < 4 ? 2.0 : 0.0, r < 14 ? 2.0 : 0.0, r < 30 ? 2.0 : 0.0});
   const StudyData study = shaken(std::vector<double>(40, 0.0), added);
-  EXPECT_THAT(
-      lines(study).back(),
-      testing::MatchesRegex("curve of light over PGA: median θ 4.* \\(.* … .*\\) m/s², β 0.* \\(.* … .*\\)"));
+  EXPECT_THAT(lines(study).back(),
+              testing::MatchesRegex("curve of light over PGA: median θ 4.* \\(.* … .*\\) m/s², β 0.* \\(.* … "
+                                    ".*\\), for this record only"));
 }
 
 TEST(Findings, NameRunsWhoseEnergiesDoNotBalance) {

@@ -12,6 +12,36 @@
 namespace keyblock::study {
 namespace {
 
+// Motions are records of one curve, by their names.
+TEST(FragilityGroups, KnowTheRecordsOfRuns) {
+  StudyData study;
+  study.axes = {{"stage.quake.motion", {"\"a\"", "\"b\""}}, {"stage.quake.scale", {"1", "2", "3"}}};
+  study.levels = {{"any", "fallen_area_m2", 0.1}};
+  for (int r = 0; r < 40; ++r) {
+    for (int j = 0; j < 2; ++j) {
+      for (int s = 0; s < 3; ++s) {
+        const bool falls = (7 * r % 40) + 4 * j < 4 + 14 * s;
+        study.runs.push_back(made_run(r,
+                                      {study.axes[0].values[static_cast<std::size_t>(j)],
+                                       study.axes[1].values[static_cast<std::size_t>(s)]},
+                                      1.0 + s, falls ? 1.0 : 0.0));
+        study.runs.back().stages[1].record = j == 0 ? "a" : "b";
+      }
+    }
+  }
+  const Summary summary = summarize(study);
+  const statistics::FragilityCurve& curve = summary.fragility[0].curve;
+  EXPECT_EQ(curve.records, 2U);
+  EXPECT_EQ(curve.pairs, 80U);
+  EXPECT_EQ(curve.refits.records.size(), 2U);
+  EXPECT_EQ(for_which_records(curve),
+            "over 2 records, which are few: the intervals are wide for that reason");
+  for (RunResult& run : study.runs) run.stages[1].record = "a";
+  const Summary one = summarize(study);
+  EXPECT_EQ(for_which_records(one.fragility[0].curve), "for this record only");
+  EXPECT_LT(one.fragility[0].curve.theta.high, curve.theta.high);
+}
+
 // An axis is one of shaking by what it does, not only by its name; curves go through all others apart.
 TEST(FragilityGroups, FragilityGroupsDifferInShakingAlone) {
   StudyData study;

@@ -157,6 +157,55 @@ TEST(Plan, VariantsMultiplyTheRuns) {
 }
 
 // An immediate release leaves out the stage at whose end measures begin.
+// Scales of the shaking share one control run; other rock and other records have their own.
+TEST(Plan, EachRockMassHasOneControlRun) {
+  const Plan plan = plan_of({"study.control=true", "study.realizations=2"});
+  ASSERT_EQ(plan.runs.size(), 6U);
+  for (std::size_t r = 0; r < 2; ++r) {
+    const PlannedRun& control = plan.runs[3 * r];
+    EXPECT_EQ(control.variant, "unshaken");
+    EXPECT_THAT(overrides_of(plan, control), ElementsAre("stage.shaken.scale=0"));
+    for (const std::size_t k : {3 * r + 1, 3 * r + 2}) {
+      EXPECT_EQ(plan.runs[k].control, control.key);
+      EXPECT_EQ(control_places(plan)[k], static_cast<std::ptrdiff_t>(3 * r));
+    }
+    EXPECT_EQ(control_places(plan)[3 * r], -1);
+  }
+  const Plan orders = plan_of(
+      {"study.control=true", "study.realizations=1",
+       "study.vary=[{key='stage.shaken.scale', values=[0.5, 1.0]}, {key='rock.order', values=[1, 2]}]"});
+  EXPECT_EQ(orders.runs.size(), 6U);
+  EXPECT_EQ(std::ranges::count(orders.runs, "unshaken", &PlannedRun::variant), 2);
+  // Its key hangs on no other scale, so that a study with more of them goes on with it.
+  const Plan more =
+      plan_of({"study.control=true", "study.realizations=1", "study.vary[0].values=[0.1, 1.0]"});
+  EXPECT_EQ(more.runs[0].key, plan.runs[0].key);
+}
+
+// Two of eight values each, in rotation: 01 12 23 34 45 56 67 70, then with another distance.
+TEST(Plan, RealizationsTakeValuesInRotation) {
+  const std::vector<std::string> asked{"study.realizations=10", "study.control=true",
+                                       "study.vary=[{key='stage.shaken.scale', values=[0.0, 0.1, 0.2, 0.3, "
+                                       "0.4, 0.5, 0.6, 0.7], per_realization=2}]"};
+  const Plan plan = plan_of(asked);
+  std::vector<std::string> taken(10);
+  for (const PlannedRun& run : plan.runs)
+    if (run.variant.empty()) taken[static_cast<std::size_t>(run.realization)] += run.values[0][0].substr(2);
+  EXPECT_THAT(taken, ElementsAre("01", "12", "23", "34", "45", "56", "67", "07", "02", "13"));
+  EXPECT_EQ(plan.runs.size(), 30U);
+  std::vector<std::string> fewer = asked;
+  fewer[0] = "study.realizations=4";
+  const auto few = keys_of(plan_of(fewer)), many = keys_of(plan);
+  EXPECT_EQ(std::vector(many.begin(), many.begin() + static_cast<std::ptrdiff_t>(few.size())), few);
+  EXPECT_THROW(plan_of({"study.vary=[{key='stage.shaken.scale', values=[1.0, 2.0], per_realization=3}]"}),
+               InputError);
+}
+
+TEST(Plan, RefusesControlRunsThatTellNothing) {
+  EXPECT_THROW(plan_of({"study.control=true", "study.since='start'"}), InputError);
+  EXPECT_THROW(plan_of({"study.control=true", "study.since='shaken'"}), InputError);
+}
+
 TEST(Plan, SaysThatThereIsNoRelease) {
   std::vector<std::string> warnings;
   const Plan plan = make_plan(gallery_file, {"study.marginal={}"}, "1.2.3", &warnings);

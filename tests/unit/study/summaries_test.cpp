@@ -147,6 +147,30 @@ TEST(Summaries, WhatTheShakingAddsIsToldFromWhatWasThereBefore) {
   EXPECT_FALSE(summarize(study).combinations[2].before);
 }
 
+// Gravity alone brings down 1.2 m² of the first rock mass, in the time of the shaking; the second has no control run.
+TEST(Summaries, WhatComesDownWithoutShakingIsTakenOff) {
+  StudyData study = shaken({0.5, 0.0}, {{{1.2, 1.2, 3.0}}, {{0.0, 2.0, 2.0}}});
+  study.control = true;
+  study.runs.push_back(made_run(0, {"0"}, 0.0, 1.7, "unshaken"));
+  study.runs.back().stages[0].damage.fallen_area = 0.5;
+  study.runs.back().fallen = {{4, "", 1, {}, 1.2, 3e4, 0.7, record::WallPart::crown}};
+  study.runs[2].fallen = {{4, "", 1, {}, 1.2, 3e4, 0.7, record::WallPart::crown},
+                          {9, "", 1, {}, 0.4, 1e4, 0.3, record::WallPart::crown}};
+  study.control_of = {6, 6, 6, -1, -1, -1, -1};
+  const Summary summary = summarize(study);
+  EXPECT_EQ(measured(study, study.runs[0]).damage->fallen_area, 0.0);
+  EXPECT_DOUBLE_EQ(measured(study, study.runs[2]).damage->fallen_area, 1.8);
+  EXPECT_DOUBLE_EQ(measured(study, study.runs[2]).damage->largest_fallen_area, 0.4);
+  ASSERT_EQ(summary.combinations.size(), 3U);
+  for (const Combination& c : summary.combinations) EXPECT_EQ(c.runs.size(), 1U);
+  EXPECT_EQ(summary.combinations[0].levels[0].exceeded, 0U);
+  EXPECT_EQ(summary.combinations[2].levels[0].exceeded, 1U);
+  EXPECT_EQ(summary.combination_of[6], -1);
+  EXPECT_EQ(summary.failed, 3U);
+  EXPECT_EQ(summary.control.realizations, 1U);
+  EXPECT_EQ(summary.control.falling, 1U);
+}
+
 TEST(Summaries, MarginalIsWhatAVariantChangesByMuch) {
   StudyData study;
   study.axes = {{"rock.order", {"1"}}};

@@ -23,14 +23,14 @@ std::vector<std::string> stages(const scenario::Scenario& scenario) {
 
 TEST(Variant, FrictionOfAllJoints) {
   scenario::Scenario s = gallery();
-  apply_variant(s, "friction-", {3.0, 0.5});
+  apply_variant(s, "friction-", {{3.0, 0.5}, ""});
   EXPECT_DOUBLE_EQ(*s.joints.friction, 27.0);
   EXPECT_FALSE(s.joint_sets[0].joints.friction);
   EXPECT_DOUBLE_EQ(*s.joint_sets[1].joints.friction, 22.0);
   EXPECT_DOUBLE_EQ(s.domain->frame_friction, 0.0);
-  apply_variant(s, "friction-", {26.0, 0.5});
+  apply_variant(s, "friction-", {{26.0, 0.5}, ""});
   EXPECT_DOUBLE_EQ(*s.joint_sets[1].joints.friction, 0.0);
-  apply_variant(s, "friction+", {89.0, 0.5});
+  apply_variant(s, "friction+", {{89.0, 0.5}, ""});
   EXPECT_DOUBLE_EQ(*s.joints.friction, 89.9);
 }
 
@@ -49,6 +49,16 @@ TEST(Variant, ReleasedAtOnceKeepsSupports) {
   s.stages[2].install = {"late"};
   apply_variant(s, "released", {});
   EXPECT_THAT(s.stages[1].install, ElementsAre("bolt", "late"));
+}
+
+TEST(Variant, UnshakenIsWhatFollowsWhereMeasuresBegin) {
+  scenario::Scenario s = gallery();
+  apply_variant(s, unshaken_variant, {{}, "excavated"});
+  EXPECT_THAT(stages(s), ElementsAre("in situ", "excavated", "shaken", "after"));
+  EXPECT_EQ(s.stages[2].scale, 0.0);
+  scenario::Scenario later = gallery();
+  apply_variant(later, unshaken_variant, {{}, "shaken"});
+  EXPECT_EQ(later.stages[2].scale, 1.0);
 }
 
 TEST(Variant, OnlyThoseThatMeanSomething) {

@@ -72,7 +72,14 @@ export interface Combination {
   map: { n: number; fallen: number[]; fallen_or_loosened: number[] };
 }
 
-export type IntensityName = "pga_m_s2" | "pgv_m_s" | "arias_m_s";
+export type IntensityName =
+  | "pga_m_s2"
+  | "pgv_m_s"
+  | "arias_m_s"
+  | "pga_rotd50_m_s2"
+  | "pgv_rotd50_m_s"
+  | "sa_03_rotd50_m_s2"
+  | "sa_10_rotd50_m_s2";
 
 export interface Fragility {
   level: string;
@@ -87,7 +94,13 @@ export interface Fragility {
   realizations: number;
   without_shaking: number;
   exceeded_without_shaking: number;
-  resamples_fitted: number;
+  records: number;
+  /** Of which records the intervals tell; null without a curve. */
+  which_records: string | null;
+  /** What of β is from rock to rock, from record to record, and of the single pair. */
+  sigma: { rock: Estimate; record: Estimate; rest: Estimate };
+  pairs: number;
+  not_monotone: number;
   points: Band & { intensity: number[]; n: number[]; exceeded: number[]; probability: Maybe[] };
   curve: Band & { intensity: number[]; probability: Maybe[] };
 }
@@ -125,6 +138,8 @@ export interface StudyJson {
     minimum: number;
     reached: boolean;
   } | null;
+  /** Of runs without shaking: realizations, and those where more than the threshold fell in them. */
+  control: { realizations: number; still_falling: number; threshold_m2: number } | null;
   marginal: { friction_degrees: number; share: number; smallest_area_m2: number } | null;
   combinations: Combination[];
   fragility: Fragility[];

@@ -26,7 +26,7 @@ export class FragilityView {
       h(
         "p",
         {},
-        `Probability that damage exceeds a level, against the strongest shaking of the run. Points: share of the realizations, with ${percent(confidence)} intervals. Curve: lognormal, by maximum likelihood, with the band of a bootstrap over realizations.`,
+        `Probability that damage exceeds a level, against the strongest shaking of the run. Points: share of the realizations, with ${percent(confidence)} intervals. Curve: lognormal, by maximum likelihood, with the band of a jackknife over realizations and records.`,
       ),
       h(
         "div",
@@ -112,17 +112,26 @@ export class FragilityView {
     const rows = groups.map((g) => {
       const name = h("th", { scope: "row", class: "text" }, this.study.combinationName(g.values));
       const n = h("td", {}, integer(g.realizations));
-      if (g.why !== null) return [name, n, h("td", { class: "text wrap", colspan: 2 }, `no curve: ${g.why}`)];
+      if (g.why !== null) return [name, n, h("td", { class: "text wrap", colspan: 3 }, `no curve: ${g.why}`)];
       return [
         name,
         n,
         h("td", {}, withUnit(q, g.theta.value), h("span", { class: "sub" }, range(g.theta))),
         h("td", {}, significant(g.beta.value), h("span", { class: "sub" }, range(g.beta))),
+        h("td", { class: "text wrap" }, g.which_records ?? "", h("span", { class: "sub" }, splitText(g))),
       ];
     });
     return tableBox(
-      `Median θ and logarithmic standard deviation β of “${this.level}”, with bootstrap intervals`,
-      [[column("Curve", "", true), column("Realizations"), column("θ", unit), column("β")]],
+      `Median θ and logarithmic standard deviation β of “${this.level}”, with intervals over realizations and records`,
+      [
+        [
+          column("Curve", "", true),
+          column("Realizations"),
+          column("θ", unit),
+          column("β"),
+          column("Intervals", "", true),
+        ],
+      ],
       rows,
       "narrow",
     );
@@ -134,6 +143,14 @@ function withoutShaking(g: Fragility): { y: number; text: string }[] {
   if (g.exceeded_without_shaking === 0) return [];
   const share = g.exceeded_without_shaking / g.without_shaking;
   return [{ y: share, text: `without shaking: ${percent(share)}` }];
+}
+
+/** What of β is of the rock, of the record and of the pair. */
+function splitText({ sigma }: Fragility): string {
+  const { rock, record, rest } = sigma;
+  if (rock.value === null || record.value === null) return "";
+  const two = (x: number | null) => significant(x, 2);
+  return `σ of rock ${two(rock.value)}, of record ${two(record.value)}, of the rest ${two(rest.value)}`;
 }
 
 /** Probability of every level in every combination: the points of all curves as numbers. */

@@ -105,7 +105,7 @@ function curveSentence(study: Study, f: Fragility): string {
   const kind = study.json.intensities.find((i) => i.name === f.intensity)!;
   if (f.why !== null) return `No fragility curve of “${f.level}” over ${kind.title}${of}: ${f.why}.`;
   const interval = (e: Fragility["theta"]) => `${significant(e.low)} … ${significant(e.high)}`;
-  return `Half of the realizations exceed “${f.level}”${study.after()} at a ${kind.title} of ${significant(f.theta.value)} ${kind.unit} (${interval(f.theta)})${of}; β of the fragility curve is ${significant(f.beta.value)} (${interval(f.beta)}).`;
+  return `Half of the realizations exceed “${f.level}”${study.after()} at a ${kind.title} of ${significant(f.theta.value)} ${kind.unit} (${interval(f.theta)})${of}; β of the fragility curve is ${significant(f.beta.value)} (${interval(f.beta)})${f.records === 1 ? ", for this record only" : ""}.`;
 }
 
 /** Whether rock falls with the strongest shaking, before it and by it, and how well that is known. The first is the verdict; none

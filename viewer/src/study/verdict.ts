@@ -10,7 +10,13 @@ export function studyFindings(study: Study): Finding[] {
   const found = headlineFindings(study);
   if (found.length === 0)
     return [{ grade: "attention", text: "No run has ended: there is nothing to tell yet." }, ...gaps(study)];
-  return [...found, ...precisionFindings(study), ...gaps(study), ...marginalFindings(study)];
+  return [
+    ...found,
+    ...controlFindings(study),
+    ...precisionFindings(study),
+    ...gaps(study),
+    ...marginalFindings(study),
+  ];
 }
 
 /** The end of the running mean with its band: what the precision is measured by. */
@@ -132,6 +138,26 @@ function gaps(study: Study): Finding[] {
     {
       grade: "attention",
       text: `${capital(list(parts))}; the statistics leave them out. If they are those with most damage, the true figures are worse.`,
+    },
+  ];
+}
+
+/** Whether gravity had brought down what it could before the shaking. */
+function controlFindings(study: Study): Finding[] {
+  const { control } = study.json;
+  if (!control || control.realizations === 0) return [];
+  const of = `${integer(control.still_falling)} of ${count(control.realizations, "realization")}`;
+  if (control.still_falling === 0)
+    return [
+      {
+        grade: "good",
+        text: `Without shaking nothing more came down: ${count(control.realizations, "control run")}.`,
+      },
+    ];
+  return [
+    {
+      grade: "attention",
+      text: `Rock was still coming down by gravity in ${of}: more than ${significant(control.threshold_m2)} m² fell in the run without shaking. It is taken off here. A rest before the shaking with until = "still" lets it come down before.`,
     },
   ];
 }
