@@ -105,6 +105,7 @@ class Facts {
     const Box box = bounds(Polygon{excavation_outline(spec), {}});
     const char* shape = spec.shape == ExcavationShape::circle      ? "circle"
                         : spec.shape == ExcavationShape::horseshoe ? "horseshoe"
+                        : spec.shape == ExcavationShape::file      ? "outline of a drawing"
                                                                    : "polygon";
     add(quoted("opening", spec.name),
         fmt::format("{}, {} m wide, {} m high", shape, number(box.size().x), number(box.size().y)));

@@ -263,6 +263,7 @@ std::vector<fs::path> input_paths(const Scenario& scenario) {
   for (const TraceMapSpec& map : scenario.trace_maps) {
     if (!map.file.empty()) paths.insert(map.file);
   }
+  paths.insert(scenario.drawings.begin(), scenario.drawings.end());
   for (const MotionSpec& motion : scenario.motions) {
     for (const MotionComponentSpec& component : motion.components) paths.insert(component.file);
   }
@@ -283,7 +284,8 @@ std::vector<simulation::InputFile> input_files(const Scenario& scenario) {
 }
 
 std::vector<rockmass::Trace> read_trace_maps(const Scenario& scenario,
-                                             std::vector<std::vector<rockmass::TraceStrength>>* strengths) {
+                                             std::vector<std::vector<rockmass::TraceStrength>>* strengths,
+                                             std::vector<std::string>* skipped) {
   std::vector<rockmass::Trace> traces;
   std::vector<Diagnostic> mistakes;
   for (std::size_t k = 0; k < scenario.trace_maps.size(); ++k) {
@@ -291,8 +293,12 @@ std::vector<rockmass::Trace> read_trace_maps(const Scenario& scenario,
       const TraceMapSpec& spec = scenario.trace_maps[k];
       const int index = static_cast<int>(k);
       std::vector<rockmass::TraceStrength> of_map;
-      const auto map = spec.file.empty() ? rockmass::traces_of(spec.lines, index)
-                                         : rockmass::read_trace_map(spec.file, index, &of_map);
+      std::string words;
+      const auto map = spec.file.empty()
+                           ? rockmass::traces_of(spec.lines, index)
+                           : rockmass::read_trace_map(spec.file, index, &of_map, spec.choice, &words);
+      if (skipped != nullptr && !words.empty())
+        skipped->push_back(spec.path + ": left out of the drawing: " + words);
       traces.insert(traces.end(), map.begin(), map.end());
       if (strengths != nullptr) strengths->push_back(std::move(of_map));
     } catch (const InputError& error) {

@@ -352,7 +352,8 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
   }
   const bool has_file = t.find("file") != nullptr;
   t.file("file", map.file,
-         {.meaning = "Lines as GeoJSON, WKT or a table, see [trace maps](guide/joints.md#trace-maps), in the "
+         {.meaning = "Lines as a drawing (ASCII DXF), shapefile, GeoJSON, WKT or table, see [trace "
+                     "maps](guide/joints.md#trace-maps), in the "
                      "coordinates of the domain. `file`, `points` or `lines` is required.",
           .required = !t.documenting() && given.empty(),
           .fallback = "points"});
@@ -373,8 +374,10 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
   t.name("name", map.name, "trace_map",
          {.meaning = "Name in results. Required with `points` and `lines`.",
           .required = !t.documenting() && !given.empty() && !has_file,
-          .fallback = "that of the file"});
-  if (map.name.empty()) map.name = map.file.stem().string();
+          .fallback = "that of its only layer, or of the file"});
+  read_map_choice(t, map.choice, t.documenting() || has_file, "file");
+  if (map.name.empty())
+    map.name = map.choice.layers.size() == 1 ? map.choice.layers.front() : map.file.stem().string();
   read_keys_of(t, map.joints, JointsOf::map, standard);
 }
 
@@ -386,7 +389,8 @@ void read_joint_keys_of(TableReader& t, JointKeys& joints, const JointKeys& stan
 
 void read_joints(TableReader& root, Scenario& scenario) {
   const Value* blocks = root.find("block");
-  const bool has_contacts = root.find("domain") != nullptr || (blocks != nullptr && blocks->items.size() > 1);
+  const bool has_contacts = root.find("domain") != nullptr || root.find("block_map") != nullptr ||
+                            (blocks != nullptr && blocks->items.size() > 1);
   root.table(
       "joints",
       {.meaning =

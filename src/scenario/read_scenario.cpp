@@ -49,8 +49,8 @@ class Consistency {
       fail(scenario_.joint_sets.front().path, "domain", "nothing", "[domain], which joint sets are made in");
     } else if (!scenario_.trace_maps.empty()) {
       fail(scenario_.trace_maps.front().path, "domain", "nothing", "[domain], which trace maps are cut in");
-    } else if (scenario_.blocks.empty() && !has_elements("block")) {
-      root_.missing("domain", "[domain] or at least one [[block]]");
+    } else if (scenario_.blocks.empty() && !has_elements("block") && !has_elements("block_map")) {
+      root_.missing("domain", "[domain] or at least one [[block]] or [[block_map]]");
     }
   }
 
@@ -192,7 +192,8 @@ constexpr std::pair<const char*, bool AcceptedWarnings::*> acceptable[] = {
     {"scale", &AcceptedWarnings::scale},
     {"window", &AcceptedWarnings::window},
     {"azimuth", &AcceptedWarnings::azimuth},
-    {"direction", &AcceptedWarnings::direction}};
+    {"direction", &AcceptedWarnings::direction},
+    {"skipped", &AcceptedWarnings::skipped}};
 
 constexpr KeyKind word_list[] = {KeyKind::references};
 constexpr KeyKind gravity_kinds[] = {KeyKind::point, KeyKind::number};

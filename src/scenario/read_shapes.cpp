@@ -13,7 +13,8 @@ constexpr int fewest_chords = 8, most_chords = 10000;
 
 constexpr Word<ExcavationShape> shapes[] = {{"circle", ExcavationShape::circle},
                                             {"polygon", ExcavationShape::polygon},
-                                            {"horseshoe", ExcavationShape::horseshoe}};
+                                            {"horseshoe", ExcavationShape::horseshoe},
+                                            {"file", ExcavationShape::file}};
 
 void read_circle(TableReader& t, ExcavationSpec& spec, const auto& rule) {
   t.point("center", spec.center,
@@ -54,7 +55,15 @@ void read_horseshoe(TableReader& t, ExcavationSpec& spec, const auto& rule) {
   }
 }
 
-void read_excavation(TableReader& t, ExcavationSpec& spec) {
+void read_outline_file(TableReader& t, ExcavationSpec& spec, const Rule& rule, Scenario& scenario) {
+  std::filesystem::path file;
+  rockmass::MapChoice choice;
+  const bool there = t.file("file", file, rule);
+  read_map_choice(t, choice, rule.applies, rule.condition);
+  if (there && spec.shape == ExcavationShape::file) read_drawn_outline(t, spec, choice, file, scenario);
+}
+
+void read_excavation(TableReader& t, ExcavationSpec& spec, Scenario& scenario) {
   spec.path = t.path();
   t.name("name", spec.name, "excavation",
          {.meaning = "Name, for the stages that excavate it.", .required = true});
@@ -64,7 +73,7 @@ void read_excavation(TableReader& t, ExcavationSpec& spec) {
     const auto word =
         std::find_if(std::begin(shapes), std::end(shapes), [&](const auto& w) { return w.value == shape; });
     static constexpr std::string_view conditions[] = {"shape = \"circle\"", "shape = \"polygon\"",
-                                                      "shape = \"horseshoe\""};
+                                                      "shape = \"horseshoe\"", "shape = \"file\""};
     r.condition = conditions[word - std::begin(shapes)];
     r.applies = t.documenting() || !known || spec.shape == shape;
     r.required = r.required && (t.documenting() || known);
@@ -76,7 +85,14 @@ void read_excavation(TableReader& t, ExcavationSpec& spec) {
   read_polygon(t, polygon, false, rule(ExcavationShape::polygon, outer));
   spec.outer = std::move(polygon.outer);
   read_horseshoe(t, spec, rule);
-  const bool round = t.documenting() || spec.shape != ExcavationShape::polygon;
+  read_outline_file(
+      t, spec,
+      rule(ExcavationShape::file,
+           {.meaning = "A drawing (ASCII DXF) or a shapefile with one closed line, the outline.",
+            .required = true}),
+      scenario);
+  const bool round =
+      t.documenting() || spec.shape == ExcavationShape::circle || spec.shape == ExcavationShape::horseshoe;
   t.integer("chords", spec.chords,
             {.meaning = "Chords of a full circle.",
              .at_least = fewest_chords,
@@ -188,7 +204,7 @@ void read_polygon(TableReader& t, Polygon& polygon, bool holes, const Rule& oute
 
 Ring excavation_outline(const ExcavationSpec& spec) {
   constexpr double pi = std::numbers::pi;
-  if (spec.shape == ExcavationShape::polygon) return spec.outer;
+  if (spec.shape == ExcavationShape::polygon || spec.shape == ExcavationShape::file) return spec.outer;
   Ring ring;
   if (spec.shape == ExcavationShape::circle) {
     for (int k = 0; k < spec.chords; ++k) {
@@ -220,10 +236,11 @@ void read_shapes(TableReader& root, Scenario& scenario) {
                           "blocks are not cut: those that lie in it are taken out whole, and one that lies "
                           "in it in part, or is "
                           "fixed, is a mistake."},
-              [](TableReader& t, ExcavationSpec& spec) { read_excavation(t, spec); });
+              [&](TableReader& t, ExcavationSpec& spec) { read_excavation(t, spec, scenario); });
   root.tables("block", scenario.blocks,
               {.meaning = "A block given by its outline, beside those cut from the domain or alone."},
               [](TableReader& t, BlockSpec& block) { read_block(t, block); });
+  read_block_maps(root, scenario);
 }
 
 }  // namespace keyblock::scenario

@@ -17,6 +17,7 @@
 #include "record/stage.h"
 #include "rockmass/joint_set.h"
 #include "rockmass/random_strength.h"
+#include "rockmass/trace_map.h"
 #include "scenario/study_spec.h"
 #include "scenario/usual.h"
 #include "simulation/boundary.h"
@@ -79,6 +80,7 @@ struct JointSetSpec {
 struct TraceMapSpec {
   std::string name;
   std::filesystem::path file;            ///< empty: lines
+  rockmass::MapChoice choice;            ///< of the file
   std::vector<std::vector<Vec2>> lines;  ///< one trace each
   JointKeys joints;
   std::string path;
@@ -104,7 +106,7 @@ struct RegionSpec {
   RockKeys rock;
 };
 
-enum class ExcavationShape { circle, polygon, horseshoe };
+enum class ExcavationShape { circle, polygon, horseshoe, file };
 
 struct ExcavationSpec {
   std::string name;
@@ -112,7 +114,7 @@ struct ExcavationSpec {
   Vec2 center;               ///< circle
   double diameter = 0.0;     ///< circle
   int chords = 96;           ///< of a full circle
-  Ring outer;                ///< polygon
+  Ring outer;                ///< polygon, file
   Vec2 invert;               ///< horseshoe: middle of the floor
   double width = 0.0;        ///< horseshoe
   double wall_height = 0.0;  ///< horseshoe: of the vertical walls
@@ -244,6 +246,7 @@ struct AcceptedWarnings {
   bool window = false;         ///< of a window that misses most of a record
   bool azimuth = false;  ///< of components of a record that are not normal to each other, or mostly left out
   bool closed_ground = false;  ///< of a frame that lies on the ground beside a cut
+  bool skipped = false;        ///< of what drawings have beside lines
   bool direction = false;      ///< of a seismic coefficient, or tilt, that pushes into the slope
 };
 
@@ -268,7 +271,10 @@ struct Scenario {
   CuttingKeys cutting;
   std::vector<RegionSpec> regions;
   std::vector<ExcavationSpec> excavations;
-  std::vector<BlockSpec> blocks;
+  std::vector<BlockSpec> blocks;  ///< those of [[block]], then those of [[block_map]]
+  std::vector<std::filesystem::path>
+      drawings;                      ///< of block maps and excavations, which are read with the scenario
+  std::vector<std::string> skipped;  ///< what of them is no line, in words
   std::optional<InSituSpec> in_situ;
   double time_step = 0.0;  ///< s; 0: not given, and no stages
   std::vector<MotionSpec> motions;

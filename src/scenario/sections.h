@@ -35,6 +35,13 @@ void read_joint_keys_of(TableReader& t, JointKeys& joints, const JointKeys& stan
 void read_interfaces(TableReader& root, Scenario& scenario);
 /// What is built into it: [[excavation]], [[block]].
 void read_shapes(TableReader& root, Scenario& scenario);
+/// [[block_map]], after [[block]].
+void read_block_maps(TableReader& root, Scenario& scenario);
+/// What is chosen of a file of lines, and how it is placed.
+void read_map_choice(TableReader& t, rockmass::MapChoice& choice, bool applies, std::string_view condition);
+/// The outline of an excavation from a file that exists.
+void read_drawn_outline(TableReader& t, ExcavationSpec& spec, const rockmass::MapChoice& choice,
+                        const std::filesystem::path& file, Scenario& scenario);
 /// [boundary], after [domain], [rock] and what is built into them.
 void read_boundary(TableReader& root, Scenario& scenario);
 /// [in_situ], [[motion]], [[load]], [[support]], [[spring]].
