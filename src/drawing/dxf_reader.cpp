@@ -133,7 +133,7 @@ class DxfReader {
       reference(record, place, own, level);
     } else if (auto shape = record.type == "POLYLINE" ? shape_of_polyline(record, vertices, numbers_, reason)
                                                       : shape_of(record, numbers_, reason)) {
-      add(record, own, std::move(*shape), place);
+      add(record, own, *shape, place);
     } else {
       skip(record, own, reason);
     }
@@ -154,7 +154,7 @@ class DxfReader {
     ++drawing_.skipped[place->second].count;
   }
 
-  void add(const Record& record, const std::string& layer, EntityShape shape, const Affine& place) {
+  void add(const Record& record, const std::string& layer, const EntityShape& shape, const Affine& place) {
     DrawnLine line{{}, shape.closed, layer, std::string(record.type), record.line};
     for (const Vec2 p : shape.vertices) {
       const Vec2 q = place(p);

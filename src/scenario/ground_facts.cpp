@@ -106,6 +106,7 @@ class Facts {
     const char* shape = spec.shape == ExcavationShape::circle      ? "circle"
                         : spec.shape == ExcavationShape::horseshoe ? "horseshoe"
                         : spec.shape == ExcavationShape::file      ? "outline of a drawing"
+                        : spec.shape == ExcavationShape::slope     ? "slope"
                                                                    : "polygon";
     add(quoted("opening", spec.name),
         fmt::format("{}, {} m wide, {} m high", shape, number(box.size().x), number(box.size().y)));

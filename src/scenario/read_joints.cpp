@@ -347,14 +347,14 @@ void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standar
 void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard) {
   map.path = t.path();
   std::vector<std::string_view> given;
-  for (const std::string_view key : {"file", "points", "lines"}) {
+  for (const std::string_view key : {"file", "points", "lines", "pattern"}) {
     if (t.find(key) != nullptr) given.push_back(key);
   }
   const bool has_file = t.find("file") != nullptr;
   t.file("file", map.file,
          {.meaning = "Lines as a drawing (ASCII DXF), shapefile, GeoJSON, WKT or table, see [trace "
                      "maps](guide/joints.md#trace-maps), in the "
-                     "coordinates of the domain. `file`, `points` or `lines` is required.",
+                     "coordinates of the domain. `file`, `points`, `lines` or `pattern` is required.",
           .required = !t.documenting() && given.empty(),
           .fallback = "points"});
   std::vector<Vec2> points;
@@ -364,6 +364,7 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
           {.meaning = "Several traces, each by its vertices, in place of a file.",
            .unit = "m",
            .fallback = "file"});
+  read_tessellation(t, map.tessellation);
   if (given.size() > 1)
     t.fail(given[1], fmt::format("{} and {}", given[1], given[0] == "file" ? "a file" : given[0]),
            "one of the two");
@@ -372,7 +373,7 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
     t.fail("points", fmt::format("{} points, all the same", points.size()), "two or more different points");
   if (!points.empty()) map.lines = {std::move(points)};
   t.name("name", map.name, "trace_map",
-         {.meaning = "Name in results. Required with `points` and `lines`.",
+         {.meaning = "Name in results. Required with `points`, `lines` and `pattern`.",
           .required = !t.documenting() && !given.empty() && !has_file,
           .fallback = "that of its only layer, or of the file"});
   read_map_choice(t, map.choice, t.documenting() || has_file, "file");

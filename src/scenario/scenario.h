@@ -17,6 +17,7 @@
 #include "record/stage.h"
 #include "rockmass/joint_set.h"
 #include "rockmass/random_strength.h"
+#include "rockmass/tessellation.h"
 #include "rockmass/trace_map.h"
 #include "scenario/study_spec.h"
 #include "scenario/usual.h"
@@ -79,9 +80,10 @@ struct JointSetSpec {
 
 struct TraceMapSpec {
   std::string name;
-  std::filesystem::path file;            ///< empty: lines
-  rockmass::MapChoice choice;            ///< of the file
-  std::vector<std::vector<Vec2>> lines;  ///< one trace each
+  std::filesystem::path file;                          ///< empty: lines
+  rockmass::MapChoice choice;                          ///< of the file
+  std::vector<std::vector<Vec2>> lines;                ///< one trace each
+  std::optional<rockmass::Tessellation> tessellation;  ///< its region may be empty: the domain
   JointKeys joints;
   std::string path;
 };
@@ -106,7 +108,18 @@ struct RegionSpec {
   RockKeys rock;
 };
 
-enum class ExcavationShape { circle, polygon, horseshoe, file };
+enum class ExcavationShape { circle, polygon, horseshoe, file, slope };
+
+/// A slope in benches, and the air above it.
+struct SlopeShape {
+  Vec2 toe;
+  bool rises_to_the_right = true;
+  double floor = 0.0;         ///< m, from the toe away from the slope
+  double face_angle = 90.0;   ///< degrees, of each bench
+  double bench_height = 0.0;  ///< m
+  double berm = 0.0;          ///< m, width of the step between two benches
+  int benches = 1;
+};
 
 struct ExcavationSpec {
   std::string name;
@@ -120,6 +133,7 @@ struct ExcavationSpec {
   double wall_height = 0.0;  ///< horseshoe: of the vertical walls
   std::optional<double>
       arch_height;  ///< horseshoe: rise of the circular arch over the walls; default width / 2
+  SlopeShape slope;
   simulation::SupportPressure pressure;                           ///< but what it is by stage
   std::vector<std::pair<std::string, double>> pressure_by_stage;  ///< Pa, from a stage on
   std::optional<bool> filled;                                     ///< with water; not given: drained

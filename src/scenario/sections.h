@@ -39,6 +39,8 @@ void read_shapes(TableReader& root, Scenario& scenario);
 void read_block_maps(TableReader& root, Scenario& scenario);
 /// What is chosen of a file of lines, and how it is placed.
 void read_map_choice(TableReader& t, rockmass::MapChoice& choice, bool applies, std::string_view condition);
+/// `pattern` of a trace map, and what goes with it; nothing where it is not there or wrong.
+void read_tessellation(TableReader& t, std::optional<rockmass::Tessellation>& read);
 /// The outline of an excavation from a file that exists.
 void read_drawn_outline(TableReader& t, ExcavationSpec& spec, const rockmass::MapChoice& choice,
                         const std::filesystem::path& file, Scenario& scenario);
@@ -85,6 +87,8 @@ void read_rock_keys(TableReader& t, RockKeys& rock, bool required);
 /// `outer` and, with `holes`, `holes`: turned the right way round and checked.
 void read_polygon(TableReader& t, Polygon& polygon, bool holes, const Rule& outer_rule);
 
+/// Counter-clockwise: the air above a slope, down to its toe.
+Ring slope_outline(const SlopeShape& slope);
 /// Circles and horseshoes as chords, counter-clockwise.
 Ring excavation_outline(const ExcavationSpec& spec);
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "scenario/block_shapes.h"
+#include "scenario/sections.h"
 #include "scenario_text.h"
 #include "warnings_of.h"
 
@@ -220,6 +221,46 @@ TEST(BlockShapes, AWallInBondAndAColumn) {
   double column = 0.0;
   for (const Ring& drum : drums) column += signed_area(drum);
   EXPECT_NEAR(column, 6.0, 1e-12);
+}
+
+TEST(Tessellations, CutADomainIntoTheirBlocks) {
+  const std::string domain = "[domain]\nx = [0.0, 10.0]\ny = [0.0, 8.0]\n[[trace_map]]\nname = \"t\"\n";
+  const Scenario bricks = read(domain + "pattern = \"brick\"\nsize = 1.0\ncourse_height = 0.5\n");
+  EXPECT_EQ(build_blocks(bricks, 0).system.blocks.size(), 8U * 10U + 8U * 11U);
+  const Scenario voronoi = read(domain + "pattern = \"voronoi\"\nsize = 1.0\nfriction = 20.0\n");
+  EXPECT_EQ(build_blocks(voronoi, 0).system.blocks.size(), 80U);
+  EXPECT_NE(build_blocks(voronoi, 1).system.blocks[0].polygon.outer,
+            build_blocks(voronoi, 0).system.blocks[0].polygon.outer);
+  const Scenario part = read(domain +
+                             "pattern = \"brick\"\nsize = 1.0\ncourse_height = 1.0\nbond = 0.0\nregion = "
+                             "[[2, 2], [2, 5], [6, 5], [6, 2]]\n");
+  EXPECT_EQ(build_blocks(part, 0).system.blocks.size(), 12U + 1U);
+  EXPECT_THAT(mistakes(domain + "pattern = \"voronoi\"\nsize = 0.01\n"),
+              HasSubstr("trace_map.t.size: found about 8e+05 blocks"));
+  EXPECT_THAT(mistakes(domain + "pattern = \"voronoi\"\nsize = 1.0\nbond = 0.5\n"), HasSubstr("bond"));
+  EXPECT_THAT(mistakes(domain + "pattern = \"brick\"\nsize = 1.0\n"),
+              HasSubstr("course_height: found nothing"));
+  EXPECT_THAT(
+      mistakes(domain + "pattern = \"brick\"\nsize = 1.0\ncourse_height = 1.0\npoints = [[0, 0], [1, 1]]\n"),
+      HasSubstr("one of the two"));
+}
+
+TEST(Slopes, WithBerms) {
+  // Three benches of 4 m at 63.4°, 2 m back each, with berms of 1 m: the crest is 8 m behind the toe.
+  const SlopeShape slope{{10.0, 0.0}, true, 10.0, std::atan(2.0) * 180.0 / std::numbers::pi, 4.0, 1.0, 3};
+  const Ring right = slope_outline(slope);
+  ASSERT_EQ(right.size(), 8U);
+  EXPECT_LT(norm(right[6] - Vec2{18.0, 12.0}), 1e-12);
+  // Above bench k: 10 m of floor, what is behind it, and half of its own setback.
+  EXPECT_NEAR(signed_area(right), 4.0 * (11.0 + 14.0 + 17.0), 1e-9);
+  SlopeShape other = slope;
+  other.rises_to_the_right = false;
+  EXPECT_NEAR(signed_area(slope_outline(other)), signed_area(right), 1e-9);
+  const Scenario scenario = read(
+      "[domain]\nx = [0.0, 30.0]\ny = [-10.0, 12.0]\n[[excavation]]\nname = \"cut\"\nshape = \"slope\"\ntoe "
+      "= [10, 0]\nfloor = 10\n"
+      "face_angle = 90\nbench_height = 4\nberm = 1\nbenches = 3\n");
+  EXPECT_EQ(build_blocks(scenario, 0).system.blocks.size(), 2U);
 }
 
 TEST(BlockShapes, AreBlocksOfAScenario) {
