@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "guide_snippet.h"
 #include "scenario/block_shapes.h"
 #include "scenario/sections.h"
 #include "scenario_text.h"
@@ -261,6 +262,14 @@ TEST(Slopes, WithBerms) {
       "= [10, 0]\nfloor = 10\n"
       "face_angle = 90\nbench_height = 4\nberm = 1\nbenches = 3\n");
   EXPECT_EQ(build_blocks(scenario, 0).system.blocks.size(), 2U);
+}
+
+TEST(Guide, SnippetsOfDrawingsWork) {
+  EXPECT_EQ(read(snippet("name = \"arch\"", "drawings.md")).blocks.size(), 15U + 6U + 6U * 10U + 6U * 11U);
+  const std::string domain = "[domain]\nx = [0.0, 30.0]\ny = [-5.0, 12.0]\n";
+  EXPECT_EQ(build_blocks(read(domain + snippet("name = \"cut\"", "drawings.md")), 0).system.blocks.size(),
+            2U);
+  EXPECT_EQ(read(domain + snippet("name = \"bricks\"", "drawings.md")).trace_maps.size(), 2U);
 }
 
 TEST(BlockShapes, AreBlocksOfAScenario) {
