@@ -42,22 +42,22 @@ void export_results(const ExportArguments& arguments) {
 void add_export(CLI::App& app) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command =
-      app.add_subcommand("export", "Results for other programs: ParaView, spreadsheets, maps");
+      app.add_subcommand("export", "Results for other programs: ParaView, spreadsheets, maps, drawings");
   command->add_option("DIR", arguments->folder, "Where a run has left its results")->required();
   command
       ->add_option(
           "--format", arguments->format,
           "vtk: frames as time series for ParaView; csv: tables of blocks, contacts and steps; geojson: the "
-          "blocks at the end of each stage")
+          "blocks at the end of each stage; dxf: the same as drawings, with the joints")
       ->required()
       ->check([](const std::string& name) {
-        return results::export_format(name) ? std::string() : name + " is none of vtk, csv and geojson";
+        return results::export_format(name) ? std::string() : name + " is none of vtk, csv, geojson and dxf";
       })
-      ->type_name("vtk|csv|geojson");
+      ->type_name("vtk|csv|geojson|dxf");
   command
       ->add_option("-o,--output", arguments->output,
-                   "Folder for the files: new, empty, or of an earlier export; default DIR/vtk, DIR/csv or "
-                   "DIR/geojson")
+                   "Folder for the files: new, empty, or of an earlier export; default DIR/vtk, DIR/csv, "
+                   "DIR/geojson or DIR/dxf")
       ->type_name("FOLDER");
   command->add_flag("--force", arguments->force,
                     "Write into a FOLDER with other files, and replace those that are in the way");

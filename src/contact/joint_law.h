@@ -72,6 +72,13 @@ struct JointLaw {
     if (!residual || worn <= 0.0) return 1.0;
     return worn < residual->slip ? 1.0 - worn / residual->slip : 0.0;
   }
+  /// Share that is left of what slip and opening may take; 1 where that is nothing. A joint that has opened has no cohesion any more; of its
+  /// friction it has what slip has left.
+  [[nodiscard]] double strength_left(double worn, bool bonded) const {
+    const bool friction_falls = residual && residual->friction_coefficient < friction_coefficient;
+    if (may_break() && may_bond() && !bonded && !friction_falls) return 0.0;
+    return has_memory() && may_wear() ? share_left(worn) : 1.0;
+  }
   /// bonded: of a joint in place that has not opened.
   [[nodiscard]] Strength strength(double worn, bool bonded) const;
   /// What is lost from w on.

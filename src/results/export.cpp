@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -17,14 +16,17 @@
 #include "results/elements_json.h"
 #include "results/export_folder.h"
 #include "results/joint_table.h"
+#include "results/stage_ends.h"
 
 namespace keyblock::results {
 namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::pair<ExportFormat, std::string_view> formats[] = {
-    {ExportFormat::vtk, "vtk"}, {ExportFormat::csv, "csv"}, {ExportFormat::geojson, "geojson"}};
+constexpr std::pair<ExportFormat, std::string_view> formats[] = {{ExportFormat::vtk, "vtk"},
+                                                                 {ExportFormat::csv, "csv"},
+                                                                 {ExportFormat::geojson, "geojson"},
+                                                                 {ExportFormat::dxf, "dxf"}};
 
 std::string format_name(ExportFormat wanted) {
   for (const auto& [format, name] : formats) {
@@ -153,23 +155,6 @@ std::string stage_geojson(const RunData& data, const record::Frame& frame) {
   return collection.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-// A stage's name as a part of a file name: what of it is plain, and as much as file systems take.
-std::string file_part(const std::string& name) {
-  constexpr std::size_t longest = 100;
-  std::string out;
-  for (const char c : name) {
-    if (out.size() == longest) break;
-    const bool plain =
-        std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 128;
-    if (plain)
-      out += c;
-    else if (!out.empty() && out.back() != '-')
-      out += '-';
-  }
-  while (!out.empty() && out.back() == '-') out.pop_back();
-  return out;
-}
-
 }  // namespace
 
 std::optional<ExportFormat> export_format(std::string_view name) {
@@ -200,18 +185,8 @@ std::vector<std::filesystem::path> export_csv(const RunData& data, FileSet& out)
 
 std::vector<std::filesystem::path> export_geojson(const RunData& data, FileSet& out) {
   std::vector<std::filesystem::path> files;
-  for (std::size_t k = 0; k < data.run.stages.size(); ++k) {
-    const record::Frame* last = nullptr;
-    for (const record::Frame& frame : data.frames) {
-      if (frame.stage == static_cast<int>(k)) last = &frame;
-    }
-    if (last == nullptr) continue;
-    const record::StageRecord& record = data.run.stages[k];
-    const std::string part = file_part(record.stage.name);
-    files.push_back(out.write(fmt::format("stage_{}{}{}{}.geojson", k + 1, part.empty() ? "" : "_", part,
-                                          record.interrupted ? "_unfinished" : ""),
-                              stage_geojson(data, *last)));
-  }
+  for (const StageEnd& end : stage_ends(data, ".geojson"))
+    files.push_back(out.write(end.file, stage_geojson(data, *end.frame)));
   return files;
 }
 
@@ -228,6 +203,9 @@ std::vector<std::filesystem::path> export_run(const RunData& data, const std::fi
       break;
     case ExportFormat::geojson:
       files = export_geojson(data, out.files());
+      break;
+    case ExportFormat::dxf:
+      files = export_dxf(data, out.files());
       break;
   }
   out.commit(files);

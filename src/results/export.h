@@ -15,6 +15,7 @@ enum class ExportFormat {
   vtk,      ///< for ParaView: FOLDER/view.py, and time series of one file per frame
   csv,      ///< FOLDER/blocks.csv, contacts.csv, steps.csv and, where points were chosen, histories.csv
   geojson,  ///< FOLDER/stage_1_NAME.geojson …: the blocks as they lie at the end of each stage
+  dxf,      ///< FOLDER/stage_1_NAME.dxf …: the same as drawings, with the joints
 };
 std::optional<ExportFormat> export_format(std::string_view name);
 
@@ -35,5 +36,9 @@ std::vector<std::filesystem::path> export_csv(const RunData& data, FileSet& out)
 
 /// RFC 7946 as to its form; the coordinates are those of the section, in metres.
 std::vector<std::filesystem::path> export_geojson(const RunData& data, FileSet& out);
+
+/// Drawings in metres: blocks as closed polylines on the layers IN_PLACE, LOOSENED, FALLEN and FIXED, the sides of joints as they lie on JOINT_NAME, of
+/// their set or map.
+std::vector<std::filesystem::path> export_dxf(const RunData& data, FileSet& out);
 
 }  // namespace keyblock::results

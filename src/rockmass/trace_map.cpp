@@ -70,6 +70,14 @@ std::vector<Trace> MapReader::finish() {
   check_unit();
   if (mistakes_.empty() && traces_.empty()) mistake(0, 0, "", "no trace", "one trace or more");
   if (!mistakes_.empty()) throw InputError(std::move(mistakes_));
+  drawing::Placement placement = placement_;
+  placement.scale = placement.scale.value_or(1.0);
+  if (!(placement == drawing::Placement{.scale = 1.0})) {
+    for (Trace& trace : traces_) {
+      trace.a = placement(trace.a);
+      trace.b = placement(trace.b);
+    }
+  }
   return std::move(traces_);
 }
 
@@ -90,9 +98,17 @@ bool is_strength(StrengthKey key, double value) {
 }
 
 std::vector<Trace> read_trace_map(const std::filesystem::path& path, int map_index,
-                                  std::vector<TraceStrength>* strengths) {
+                                  std::vector<TraceStrength>* strengths, const MapChoice& choice,
+                                  std::string* skipped) {
   const std::string text = read_file(path);
   MapReader map(path.string(), map_index);
+  map.place(choice.placement);
+  if (drawing::is_dxf(text) || drawing::is_shapefile(text)) {
+    read_drawn_lines(text, path, choice, map, skipped);
+    return map.finish();
+  }
+  if (!choice.layers.empty())
+    map.mistake(0, 0, "layers", "layers of a file that is no drawing", "no layers, or a drawing (DXF)");
   if (const auto foreign = foreign_format(text)) {
     map.mistake(0, 0, "", foreign->name, MapReader::format_expected, foreign->advice);
     return map.finish();

@@ -1,13 +1,21 @@
 #pragma once
 #include <filesystem>
+#include <string>
 #include <vector>
 
+#include "drawing/drawing.h"
 #include "rockmass/random_strength.h"
 #include "rockmass/trace.h"
 
 namespace keyblock::rockmass {
 
-/// The traces of a digitised map, coordinates as in the file. Every straight piece is one Trace with source
+/// What is taken of a map, and where it lies.
+struct MapChoice {
+  std::vector<std::string> layers;  ///< of a drawing; empty: all
+  drawing::Placement placement;
+};
+
+/// The traces of a digitised map, laid into the section by `choice`. Every straight piece is one Trace with source
 /// {trace_map, map_index} and the number of its trace; pieces of length zero are left out.
 ///
 /// The contents of the file say what it is:
@@ -23,7 +31,10 @@ namespace keyblock::rockmass {
 ///   else stands beside them: a trace in each row.
 ///   With no header: a trace in each row, x y x y …. Rows that begin with their number are refused.
 ///
-/// `strengths`, if given, receives those of each trace, by its number: columns of a table with one of strength_names, in which every row of a trace has
+/// - A drawing (ASCII DXF, drawing/drawing.h): the lines on the chosen layers. A shapefile: its lines, and the rings of its polygons; a projection
+///   beside it (.prj) says whether they are degrees.
+///
+/// `skipped`, if given, receives what of a drawing is no line, in words. `strengths`, if given, receives those of each trace, by its number: columns of a table with one of strength_names, in which every row of a trace has
 /// the same or nothing, and members of `properties` of a GeoJSON feature. Empty where the file has none.
 ///
 /// Throws InputError with every mistake of the file (at most 20): unreadable file, a file of another kind, which is named,
@@ -31,7 +42,8 @@ namespace keyblock::rockmass {
 /// fewer than two different vertices, traces that go on after rows of another one, strengths that are none, and coordinates in degrees: the file says so,
 /// or they lie as only degrees do.
 std::vector<Trace> read_trace_map(const std::filesystem::path& path, int map_index,
-                                  std::vector<TraceStrength>* strengths = nullptr);
+                                  std::vector<TraceStrength>* strengths = nullptr,
+                                  const MapChoice& choice = {}, std::string* skipped = nullptr);
 
 /// A trace through the vertices of each line, of which two differ.
 std::vector<Trace> traces_of(const std::vector<std::vector<Vec2>>& lines, int map_index);

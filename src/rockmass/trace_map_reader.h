@@ -1,6 +1,7 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "geometry/polygon.h"
 #include "rockmass/random_strength.h"
 #include "rockmass/trace.h"
+#include "rockmass/trace_map.h"
 
 /// What the readers of trace maps share; for trace_map*.cpp alone.
 namespace keyblock::rockmass {
@@ -32,8 +34,11 @@ class MapReader {
   [[nodiscard]] bool is_full() const { return mistakes_.size() >= max_mistakes; }
 
   static constexpr const char* trace_expected = "two or more different vertices";
-  static constexpr const char* format_expected = "GeoJSON, WKT, or a table with the columns trace, x, y";
+  static constexpr const char* format_expected =
+      "a drawing (ASCII DXF), a shapefile (.shp), GeoJSON, WKT, or a table with the columns trace, x, y";
 
+  /// How all traces are laid into the section at the end.
+  void place(const drawing::Placement& placement) { placement_ = placement; }
   /// Of the traces that are added from now on.
   void set_strength(const TraceStrength& strength) { strength_ = strength; }
   /// Adds a trace. Returns what is found in place of one that has no two different vertices.
@@ -59,6 +64,7 @@ class MapReader {
   TraceStrength strength_;                ///< of the next trace
   std::vector<TraceStrength> strengths_;  ///< by number of the trace
   Box box_;
+  drawing::Placement placement_;
   Diagnostic system_;  ///< where the file names its system of coordinates, and as what
   std::vector<Diagnostic> mistakes_;
 };
@@ -95,6 +101,9 @@ bool is_wkt(std::string_view text);
 /// One reader per format; mistakes are added to the map.
 void read_geojson(std::string_view text, MapReader& map);
 void read_trace_table(std::string_view text, MapReader& map);
+/// A drawing or a shapefile. Throws InputError for one that cannot be read.
+void read_drawn_lines(std::string_view text, const std::filesystem::path& path, const MapChoice& choice,
+                      MapReader& map, std::string* skipped);
 /// `line` and `column`: where the text begins in the file.
 void read_wkt(std::string_view text, MapReader& map, int line = 1, int column = 1);
 

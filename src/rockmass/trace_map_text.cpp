@@ -16,17 +16,14 @@ std::string upper(std::string_view text) {
 
 const std::string to_geojson = "turn it into GeoJSON: in QGIS by Export, Save features as; or by ogr2ogr ";
 
-const ForeignFormat dxf{"a drawing (DXF)", to_geojson + "-f GeoJSON lines.geojson drawing.dxf"};
-
 /// Formats that are known by their first bytes.
 std::optional<ForeignFormat> by_first_bytes(std::string_view text) {
   using std::string_view_literals::operator""sv;
   const ForeignFormat utf_16{"text in UTF-16", "save it as text in UTF-8, or as CSV"};
   const std::pair<std::string_view, ForeignFormat> known[] = {
-      {"\0\0\x27\x0a"sv, {"an ESRI shapefile", to_geojson + "-f GeoJSON lines.geojson lines.shp"}},
       {"SQLite format 3", {"a GeoPackage (SQLite)", to_geojson + "-f GeoJSON lines.geojson lines.gpkg"}},
-      {"AutoCAD Binary DXF", {"a drawing (binary DXF)", dxf.advice}},
-      {"AC10", {"an AutoCAD drawing (DWG)", "save it as DXF; then " + dxf.advice}},
+      {"AutoCAD Binary DXF", {"a drawing (binary DXF)", "save it as DXF, as text (ASCII)"}},
+      {"AC10", {"an AutoCAD drawing (DWG)", "save it as DXF, as text (ASCII)"}},
       {"PK\x03\x04",
        {"a packed file (ZIP, KMZ, XLSX)", "unpack it, or save the table as CSV, and name the file in it"}},
       {"PROJCS[", {"the projection of a shapefile (.prj)", "name the file with the lines"}},
@@ -39,15 +36,6 @@ std::optional<ForeignFormat> by_first_bytes(std::string_view text) {
   return std::nullopt;
 }
 
-bool is_dxf(std::string_view text) {
-  // Pairs of lines, a group code and its value; comments have the code 999.
-  while (!text.empty()) {
-    const std::string_view code = trimmed(take_line(text)), value = trimmed(take_line(text));
-    if (code != "999") return code == "0" && value == "SECTION";
-  }
-  return false;
-}
-
 ForeignFormat xml_format(std::string_view text) {
   constexpr std::size_t enough = 4096;
   const std::string beginning = upper(text.substr(0, enough));
@@ -57,8 +45,7 @@ ForeignFormat xml_format(std::string_view text) {
     return {"KML, which is in degrees", to_geojson + project + "lines.kml (33: your UTM zone)"};
   if (beginning.find("<GPX") != std::string::npos)
     return {"GPX, which is in degrees", to_geojson + project + "lines.gpx tracks (33: your UTM zone)"};
-  if (beginning.find("<SVG") != std::string::npos)
-    return {"a picture (SVG)", "save its lines as DXF; then " + dxf.advice};
+  if (beginning.find("<SVG") != std::string::npos) return {"a picture (SVG)", "save its lines as DXF"};
   return {"XML", to_geojson + "-f GeoJSON lines.geojson FILE"};
 }
 
@@ -111,7 +98,6 @@ std::optional<ForeignFormat> foreign_format(std::string_view text) {
   if (auto format = by_first_bytes(text)) return format;
   if (text.substr(0, enough).find('\0') != std::string_view::npos)
     return ForeignFormat{"a file that is no text", to_geojson + "-f GeoJSON lines.geojson FILE"};
-  if (is_dxf(text)) return dxf;
   const auto first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (first != std::string_view::npos && text[first] == '<') return xml_format(text.substr(first));
   return std::nullopt;

@@ -16,7 +16,8 @@ struct BlockModel {
   int realization = 0;
   /// Strengths that trace maps have of their own, by map and number of the trace; empty for maps without.
   std::vector<std::vector<rockmass::TraceStrength>> map_strengths;
-  std::vector<Ring> outlines;  ///< of the excavations, counter-clockwise, real coordinates
+  std::vector<std::string> skipped;  ///< what is no line of the drawings of trace maps, in words
+  std::vector<Ring> outlines;        ///< of the excavations, counter-clockwise, real coordinates
   /// The blocks cut from the domain, then those of the scenario with edges of kind `free`; an explicit block belongs
   /// to the excavations whose outline it lies in (excavated_blocks.h). Local coordinates. Without a domain the local origin is a
   /// rounded corner of the blocks if they lie far away.

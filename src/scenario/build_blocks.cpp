@@ -139,7 +139,7 @@ void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
     const auto set = generate(scenario, k, window, realization);
     model.traces.insert(model.traces.end(), set.begin(), set.end());
   }
-  const auto mapped = read_trace_maps(scenario, &model.map_strengths);
+  const auto mapped = read_trace_maps(scenario, &model.map_strengths, &model.skipped, realization);
   model.traces.insert(model.traces.end(), mapped.begin(), mapped.end());
 
   cutting::CutInput input;

@@ -105,6 +105,8 @@ class Facts {
     const Box box = bounds(Polygon{excavation_outline(spec), {}});
     const char* shape = spec.shape == ExcavationShape::circle      ? "circle"
                         : spec.shape == ExcavationShape::horseshoe ? "horseshoe"
+                        : spec.shape == ExcavationShape::file      ? "outline of a drawing"
+                        : spec.shape == ExcavationShape::slope     ? "slope"
                                                                    : "polygon";
     add(quoted("opening", spec.name),
         fmt::format("{}, {} m wide, {} m high", shape, number(box.size().x), number(box.size().y)));

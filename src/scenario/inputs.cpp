@@ -289,6 +289,18 @@ class MotionReader {
   bool has_told_of_components_ = false;  ///< of the motion at hand: that one is another than it seems
 };
 
+// Without a domain, which is a mistake that is told elsewhere, there is none.
+std::vector<rockmass::Trace> tessellated(const Scenario& scenario, rockmass::Tessellation tessellation,
+                                         int index, int realization) {
+  if (tessellation.region.empty()) {
+    if (!scenario.domain) return {};
+    const Box box = scenario.domain->box();
+    tessellation.region = {box.min, {box.max.x, box.min.y}, box.max, {box.min.x, box.max.y}};
+  }
+  return rockmass::traces_of(rockmass::tessellation_lines(tessellation, scenario.seed, realization, index),
+                             index);
+}
+
 }  // namespace
 
 std::vector<fs::path> input_paths(const Scenario& scenario) {
@@ -296,6 +308,7 @@ std::vector<fs::path> input_paths(const Scenario& scenario) {
   for (const TraceMapSpec& map : scenario.trace_maps) {
     if (!map.file.empty()) paths.insert(map.file);
   }
+  paths.insert(scenario.drawings.begin(), scenario.drawings.end());
   for (const MotionSpec& motion : scenario.motions) {
     for (const MotionComponentSpec& component : motion.components) paths.insert(component.file);
   }
@@ -316,16 +329,27 @@ std::vector<simulation::InputFile> input_files(const Scenario& scenario) {
 }
 
 std::vector<rockmass::Trace> read_trace_maps(const Scenario& scenario,
-                                             std::vector<std::vector<rockmass::TraceStrength>>* strengths) {
+                                             std::vector<std::vector<rockmass::TraceStrength>>* strengths,
+                                             std::vector<std::string>* skipped, int realization) {
   std::vector<rockmass::Trace> traces;
   std::vector<Diagnostic> mistakes;
   for (std::size_t k = 0; k < scenario.trace_maps.size(); ++k) {
     try {
       const TraceMapSpec& spec = scenario.trace_maps[k];
       const int index = static_cast<int>(k);
+      if (spec.tessellation) {
+        const auto map = tessellated(scenario, *spec.tessellation, index, realization);
+        traces.insert(traces.end(), map.begin(), map.end());
+        if (strengths != nullptr) strengths->emplace_back();
+        continue;
+      }
       std::vector<rockmass::TraceStrength> of_map;
-      const auto map = spec.file.empty() ? rockmass::traces_of(spec.lines, index)
-                                         : rockmass::read_trace_map(spec.file, index, &of_map);
+      std::string words;
+      const auto map = spec.file.empty()
+                           ? rockmass::traces_of(spec.lines, index)
+                           : rockmass::read_trace_map(spec.file, index, &of_map, spec.choice, &words);
+      if (skipped != nullptr && !words.empty())
+        skipped->push_back(spec.path + ": left out of the drawing: " + words);
       traces.insert(traces.end(), map.begin(), map.end());
       if (strengths != nullptr) strengths->push_back(std::move(of_map));
     } catch (const InputError& error) {

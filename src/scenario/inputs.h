@@ -20,9 +20,11 @@ std::vector<std::filesystem::path> input_paths(const Scenario& scenario);
 std::vector<simulation::InputFile> input_files(const Scenario& scenario);
 
 /// The traces of all [[trace_map]], each with its index.
-/// `strengths`, if given, receives those of the traces of each map (rockmass::read_trace_map).
+/// `strengths`, if given, receives those of the traces of each map (rockmass::read_trace_map);
+/// Those of a tessellation are those of the realization. `skipped` receives what of drawings is no line, in words.
 std::vector<rockmass::Trace> read_trace_maps(
-    const Scenario& scenario, std::vector<std::vector<rockmass::TraceStrength>>* strengths = nullptr);
+    const Scenario& scenario, std::vector<std::vector<rockmass::TraceStrength>>* strengths = nullptr,
+    std::vector<std::string>* skipped = nullptr, int realization = 0);
 
 /// All [[motion]], in the order of the scenario: records read, projected on the section and cut to their window,
 /// tables and sines as they are; unscaled. What the user should know is added to `warnings`: notes of the readers,

@@ -35,12 +35,14 @@ class Plausibility {
   explicit Plausibility(const Scenario& scenario) : scenario_(scenario) {}
 
   std::vector<std::string> rock_mass_warnings() {
+    add_skipped(scenario_.skipped);
     check_distributions();
     check_outlines();
     return std::move(warnings_);
   }
 
   std::vector<std::string> warnings() {
+    add_skipped(scenario_.skipped);
     add_magnitude_warnings(scenario_, warnings_);
     check_distributions();
     add_strength_warnings(scenario_, warnings_);
@@ -64,6 +66,10 @@ class Plausibility {
   }
 
  private:
+  void add_skipped(const std::vector<std::string>& skipped) {
+    if (!scenario_.accepted.skipped) warnings_.insert(warnings_.end(), skipped.begin(), skipped.end());
+  }
+
   template <class... Values>
   void warn(fmt::format_string<Values...> text, Values&&... values) {
     warnings_.push_back(fmt::format(text, std::forward<Values>(values)...));
@@ -369,6 +375,7 @@ std::vector<std::string> rock_mass_warnings(const Scenario& scenario) {
 void add_block_warnings(const Scenario& scenario, const BlockModel& model,
                         std::vector<std::string>& warnings) {
   const std::vector<cutting::CutBlock>& blocks = model.system.blocks;
+  if (!scenario.accepted.skipped) warnings.insert(warnings.end(), model.skipped.begin(), model.skipped.end());
   for (std::size_t k = 0; k < scenario.excavations.size(); ++k) {
     const auto held = std::count_if(blocks.begin(), blocks.end(), [&](const cutting::CutBlock& block) {
       return std::find(block.excavations.begin(), block.excavations.end(), static_cast<int>(k)) !=

@@ -351,13 +351,14 @@ void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standar
 void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard) {
   map.path = t.path();
   std::vector<std::string_view> given;
-  for (const std::string_view key : {"file", "points", "lines"}) {
+  for (const std::string_view key : {"file", "points", "lines", "pattern"}) {
     if (t.find(key) != nullptr) given.push_back(key);
   }
   const bool has_file = t.find("file") != nullptr;
   t.file("file", map.file,
-         {.meaning = "Lines as GeoJSON, WKT or a table, see [trace maps](guide/joints.md#trace-maps), in the "
-                     "coordinates of the domain. `file`, `points` or `lines` is required.",
+         {.meaning = "Lines as a drawing (ASCII DXF), shapefile, GeoJSON, WKT or table, see [trace "
+                     "maps](guide/joints.md#trace-maps), in the "
+                     "coordinates of the domain. `file`, `points`, `lines` or `pattern` is required.",
           .required = !t.documenting() && given.empty(),
           .fallback = "points"});
   std::vector<Vec2> points;
@@ -367,6 +368,7 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
           {.meaning = "Several traces, each by its vertices, in place of a file.",
            .unit = "m",
            .fallback = "file"});
+  read_tessellation(t, map.tessellation);
   if (given.size() > 1)
     t.fail(given[1], fmt::format("{} and {}", given[1], given[0] == "file" ? "a file" : given[0]),
            "one of the two");
@@ -375,10 +377,12 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
     t.fail("points", fmt::format("{} points, all the same", points.size()), "two or more different points");
   if (!points.empty()) map.lines = {std::move(points)};
   t.name("name", map.name, "trace_map",
-         {.meaning = "Name in results. Required with `points` and `lines`.",
+         {.meaning = "Name in results. Required with `points`, `lines` and `pattern`.",
           .required = !t.documenting() && !given.empty() && !has_file,
-          .fallback = "that of the file"});
-  if (map.name.empty()) map.name = map.file.stem().string();
+          .fallback = "that of its only layer, or of the file"});
+  read_map_choice(t, map.choice, t.documenting() || has_file, "file");
+  if (map.name.empty())
+    map.name = map.choice.layers.size() == 1 ? map.choice.layers.front() : map.file.stem().string();
   read_keys_of(t, map.joints, JointsOf::map, standard);
 }
 
@@ -390,7 +394,8 @@ void read_joint_keys_of(TableReader& t, JointKeys& joints, const JointKeys& stan
 
 void read_joints(TableReader& root, Scenario& scenario) {
   const Value* blocks = root.find("block");
-  const bool has_contacts = root.find("domain") != nullptr || (blocks != nullptr && blocks->items.size() > 1);
+  const bool has_contacts = root.find("domain") != nullptr || root.find("block_map") != nullptr ||
+                            (blocks != nullptr && blocks->items.size() > 1);
   root.table(
       "joints",
       {.meaning =

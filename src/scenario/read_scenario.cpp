@@ -25,6 +25,7 @@ class Consistency {
     const Value* section = root_.find("section");
     if (section == nullptr || section->find("azimuth") == nullptr) check_without_azimuth();
     check_trace_counts();
+    check_tessellations();
     check_bridges();
     check_motion_places();
     check_weights();
@@ -49,8 +50,8 @@ class Consistency {
       fail(scenario_.joint_sets.front().path, "domain", "nothing", "[domain], which joint sets are made in");
     } else if (!scenario_.trace_maps.empty()) {
       fail(scenario_.trace_maps.front().path, "domain", "nothing", "[domain], which trace maps are cut in");
-    } else if (scenario_.blocks.empty() && !has_elements("block")) {
-      root_.missing("domain", "[domain] or at least one [[block]]");
+    } else if (scenario_.blocks.empty() && !has_elements("block") && !has_elements("block_map")) {
+      root_.missing("domain", "[domain] or at least one [[block]] or [[block_map]]");
     }
   }
 
@@ -85,6 +86,20 @@ class Consistency {
            fmt::format("about {:.2g} traces in the domain", count),
            fmt::format("at most {:.0e}; spacing, length or gap are too small for this domain",
                        rockmass::max_traces));
+    }
+  }
+
+  void check_tessellations() {
+    for (const TraceMapSpec& spec : scenario_.trace_maps) {
+      if (!spec.tessellation) continue;
+      rockmass::Tessellation tessellation = *spec.tessellation;
+      if (tessellation.region.empty() && scenario_.domain)
+        tessellation.region = {scenario_.domain->box().min, scenario_.domain->box().max};
+      const double count = rockmass::expected_count(tessellation);
+      if (!(count > rockmass::most_of_tessellation)) continue;
+      fail(spec.path, join_path(spec.path, "size"), fmt::format("about {:.2g} blocks", count),
+           fmt::format("at most {:.0e}; blocks are too small for this region",
+                       rockmass::most_of_tessellation));
     }
   }
 
@@ -192,7 +207,8 @@ constexpr std::pair<const char*, bool AcceptedWarnings::*> acceptable[] = {
     {"scale", &AcceptedWarnings::scale},
     {"window", &AcceptedWarnings::window},
     {"azimuth", &AcceptedWarnings::azimuth},
-    {"direction", &AcceptedWarnings::direction}};
+    {"direction", &AcceptedWarnings::direction},
+    {"skipped", &AcceptedWarnings::skipped}};
 
 constexpr KeyKind word_list[] = {KeyKind::references};
 constexpr KeyKind gravity_kinds[] = {KeyKind::point, KeyKind::number};

@@ -13,7 +13,9 @@ constexpr int fewest_chords = 8, most_chords = 10000;
 
 constexpr Word<ExcavationShape> shapes[] = {{"circle", ExcavationShape::circle},
                                             {"polygon", ExcavationShape::polygon},
-                                            {"horseshoe", ExcavationShape::horseshoe}};
+                                            {"horseshoe", ExcavationShape::horseshoe},
+                                            {"file", ExcavationShape::file},
+                                            {"slope", ExcavationShape::slope}};
 
 void read_circle(TableReader& t, ExcavationSpec& spec, const auto& rule) {
   t.point("center", spec.center,
@@ -54,7 +56,43 @@ void read_horseshoe(TableReader& t, ExcavationSpec& spec, const auto& rule) {
   }
 }
 
-void read_excavation(TableReader& t, ExcavationSpec& spec) {
+constexpr Word<bool> sides[] = {{"right", true}, {"left", false}};
+
+void read_slope(TableReader& t, SlopeShape& slope, const auto& rule) {
+  constexpr auto shape = ExcavationShape::slope;
+  const auto length = [&](std::string_view meaning) {
+    return rule(shape,
+                {.meaning = meaning, .unit = "m", .required = true, .above = 0.0, .usual = &usual::extent});
+  };
+  t.point("toe", slope.toe,
+          rule(shape, {.meaning = "Foot of the lowest bench.", .unit = "m", .required = true}));
+  t.word("rises_to", slope.rises_to_the_right, sides,
+         rule(shape, {.meaning = "Side to which the slope rises."}));
+  t.number("floor", slope.floor, length("From the toe to the other side, as far as rock is taken away."));
+  t.number("face_angle", slope.face_angle,
+           rule(shape, {.meaning = "Of each bench, from the horizontal.",
+                        .unit = "°",
+                        .above = 0.0,
+                        .at_most = 90.0,
+                        .usual = &usual::angle}));
+  t.number("bench_height", slope.bench_height, length("Of each bench."));
+  t.number("berm", slope.berm,
+           rule(shape, {.meaning = "Width of the step between two benches.",
+                        .unit = "m",
+                        .at_least = 0.0,
+                        .usual = &usual::extent}));
+  t.integer("benches", slope.benches, rule(shape, {.meaning = "How many.", .at_least = 1, .at_most = 1000}));
+}
+
+void read_outline_file(TableReader& t, ExcavationSpec& spec, const Rule& rule, Scenario& scenario) {
+  std::filesystem::path file;
+  rockmass::MapChoice choice;
+  const bool there = t.file("file", file, rule);
+  read_map_choice(t, choice, rule.applies, rule.condition);
+  if (there && spec.shape == ExcavationShape::file) read_drawn_outline(t, spec, choice, file, scenario);
+}
+
+void read_excavation(TableReader& t, ExcavationSpec& spec, Scenario& scenario) {
   spec.path = t.path();
   t.name("name", spec.name, "excavation",
          {.meaning = "Name, for the stages that excavate it.", .required = true});
@@ -64,7 +102,8 @@ void read_excavation(TableReader& t, ExcavationSpec& spec) {
     const auto word =
         std::find_if(std::begin(shapes), std::end(shapes), [&](const auto& w) { return w.value == shape; });
     static constexpr std::string_view conditions[] = {"shape = \"circle\"", "shape = \"polygon\"",
-                                                      "shape = \"horseshoe\""};
+                                                      "shape = \"horseshoe\"", "shape = \"file\"",
+                                                      "shape = \"slope\""};
     r.condition = conditions[word - std::begin(shapes)];
     r.applies = t.documenting() || !known || spec.shape == shape;
     r.required = r.required && (t.documenting() || known);
@@ -76,7 +115,15 @@ void read_excavation(TableReader& t, ExcavationSpec& spec) {
   read_polygon(t, polygon, false, rule(ExcavationShape::polygon, outer));
   spec.outer = std::move(polygon.outer);
   read_horseshoe(t, spec, rule);
-  const bool round = t.documenting() || spec.shape != ExcavationShape::polygon;
+  read_outline_file(
+      t, spec,
+      rule(ExcavationShape::file,
+           {.meaning = "A drawing (ASCII DXF) or a shapefile with one closed line, the outline.",
+            .required = true}),
+      scenario);
+  read_slope(t, spec.slope, rule);
+  const bool round =
+      t.documenting() || spec.shape == ExcavationShape::circle || spec.shape == ExcavationShape::horseshoe;
   t.integer("chords", spec.chords,
             {.meaning = "Chords of a full circle.",
              .at_least = fewest_chords,
@@ -186,9 +233,26 @@ void read_polygon(TableReader& t, Polygon& polygon, bool holes, const Rule& oute
   }
 }
 
+Ring slope_outline(const SlopeShape& slope) {
+  constexpr double vertical = 90.0;
+  const double setback = slope.face_angle == vertical
+                             ? 0.0
+                             : slope.bench_height / std::tan(slope.face_angle * std::numbers::pi / 180.0);
+  const double side = slope.rises_to_the_right ? 1.0 : -1.0;
+  Ring ring{slope.toe - Vec2{side * slope.floor, 0.0}, slope.toe};
+  for (int k = 0; k < slope.benches; ++k) {
+    if (k > 0 && slope.berm > 0.0) ring.push_back(ring.back() + Vec2{side * slope.berm, 0.0});
+    ring.push_back(ring.back() + Vec2{side * setback, slope.bench_height});
+  }
+  ring.push_back({ring.front().x, ring.back().y});
+  if (!slope.rises_to_the_right) std::ranges::reverse(ring);
+  return ring;
+}
+
 Ring excavation_outline(const ExcavationSpec& spec) {
   constexpr double pi = std::numbers::pi;
-  if (spec.shape == ExcavationShape::polygon) return spec.outer;
+  if (spec.shape == ExcavationShape::slope) return slope_outline(spec.slope);
+  if (spec.shape == ExcavationShape::polygon || spec.shape == ExcavationShape::file) return spec.outer;
   Ring ring;
   if (spec.shape == ExcavationShape::circle) {
     for (int k = 0; k < spec.chords; ++k) {
@@ -220,10 +284,11 @@ void read_shapes(TableReader& root, Scenario& scenario) {
                           "blocks are not cut: those that lie in it are taken out whole, and one that lies "
                           "in it in part, or is "
                           "fixed, is a mistake."},
-              [](TableReader& t, ExcavationSpec& spec) { read_excavation(t, spec); });
+              [&](TableReader& t, ExcavationSpec& spec) { read_excavation(t, spec, scenario); });
   root.tables("block", scenario.blocks,
               {.meaning = "A block given by its outline, beside those cut from the domain or alone."},
               [](TableReader& t, BlockSpec& block) { read_block(t, block); });
+  read_block_maps(root, scenario);
 }
 
 }  // namespace keyblock::scenario

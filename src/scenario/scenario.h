@@ -17,6 +17,8 @@
 #include "record/stage.h"
 #include "rockmass/joint_set.h"
 #include "rockmass/random_strength.h"
+#include "rockmass/tessellation.h"
+#include "rockmass/trace_map.h"
 #include "scenario/study_spec.h"
 #include "scenario/usual.h"
 #include "simulation/boundary.h"
@@ -78,8 +80,10 @@ struct JointSetSpec {
 
 struct TraceMapSpec {
   std::string name;
-  std::filesystem::path file;            ///< empty: lines
-  std::vector<std::vector<Vec2>> lines;  ///< one trace each
+  std::filesystem::path file;                          ///< empty: lines
+  rockmass::MapChoice choice;                          ///< of the file
+  std::vector<std::vector<Vec2>> lines;                ///< one trace each
+  std::optional<rockmass::Tessellation> tessellation;  ///< its region may be empty: the domain
   JointKeys joints;
   std::string path;
 };
@@ -104,7 +108,18 @@ struct RegionSpec {
   RockKeys rock;
 };
 
-enum class ExcavationShape { circle, polygon, horseshoe };
+enum class ExcavationShape { circle, polygon, horseshoe, file, slope };
+
+/// A slope in benches, and the air above it.
+struct SlopeShape {
+  Vec2 toe;
+  bool rises_to_the_right = true;
+  double floor = 0.0;         ///< m, from the toe away from the slope
+  double face_angle = 90.0;   ///< degrees, of each bench
+  double bench_height = 0.0;  ///< m
+  double berm = 0.0;          ///< m, width of the step between two benches
+  int benches = 1;
+};
 
 struct ExcavationSpec {
   std::string name;
@@ -112,12 +127,13 @@ struct ExcavationSpec {
   Vec2 center;               ///< circle
   double diameter = 0.0;     ///< circle
   int chords = 96;           ///< of a full circle
-  Ring outer;                ///< polygon
+  Ring outer;                ///< polygon, file
   Vec2 invert;               ///< horseshoe: middle of the floor
   double width = 0.0;        ///< horseshoe
   double wall_height = 0.0;  ///< horseshoe: of the vertical walls
   std::optional<double>
       arch_height;  ///< horseshoe: rise of the circular arch over the walls; default width / 2
+  SlopeShape slope;
   simulation::SupportPressure pressure;                           ///< but what it is by stage
   std::vector<std::pair<std::string, double>> pressure_by_stage;  ///< Pa, from a stage on
   std::optional<bool> filled;                                     ///< with water; not given: drained
@@ -244,6 +260,7 @@ struct AcceptedWarnings {
   bool window = false;         ///< of a window that misses most of a record
   bool azimuth = false;  ///< of components of a record that are not normal to each other, or mostly left out
   bool closed_ground = false;  ///< of a frame that lies on the ground beside a cut
+  bool skipped = false;        ///< of what drawings have beside lines
   bool direction = false;      ///< of a seismic coefficient, or tilt, that pushes into the slope
 };
 
@@ -268,7 +285,10 @@ struct Scenario {
   CuttingKeys cutting;
   std::vector<RegionSpec> regions;
   std::vector<ExcavationSpec> excavations;
-  std::vector<BlockSpec> blocks;
+  std::vector<BlockSpec> blocks;  ///< those of [[block]], then those of [[block_map]]
+  std::vector<std::filesystem::path>
+      drawings;                      ///< of block maps and excavations, which are read with the scenario
+  std::vector<std::string> skipped;  ///< what of them is no line, in words
   std::optional<InSituSpec> in_situ;
   double time_step = 0.0;  ///< s; 0: not given, and no stages
   std::vector<MotionSpec> motions;

@@ -35,6 +35,15 @@ void read_joint_keys_of(TableReader& t, JointKeys& joints, const JointKeys& stan
 void read_interfaces(TableReader& root, Scenario& scenario);
 /// What is built into it: [[excavation]], [[block]].
 void read_shapes(TableReader& root, Scenario& scenario);
+/// [[block_map]], after [[block]].
+void read_block_maps(TableReader& root, Scenario& scenario);
+/// What is chosen of a file of lines, and how it is placed.
+void read_map_choice(TableReader& t, rockmass::MapChoice& choice, bool applies, std::string_view condition);
+/// `pattern` of a trace map, and what goes with it; nothing where it is not there or wrong.
+void read_tessellation(TableReader& t, std::optional<rockmass::Tessellation>& read);
+/// The outline of an excavation from a file that exists.
+void read_drawn_outline(TableReader& t, ExcavationSpec& spec, const rockmass::MapChoice& choice,
+                        const std::filesystem::path& file, Scenario& scenario);
 /// [boundary], after [domain], [rock] and what is built into them.
 void read_boundary(TableReader& root, Scenario& scenario);
 /// [in_situ], [[motion]], [[load]], [[support]], [[spring]].
@@ -78,6 +87,8 @@ void read_rock_keys(TableReader& t, RockKeys& rock, bool required);
 /// `outer` and, with `holes`, `holes`: turned the right way round and checked.
 void read_polygon(TableReader& t, Polygon& polygon, bool holes, const Rule& outer_rule);
 
+/// Counter-clockwise: the air above a slope, down to its toe.
+Ring slope_outline(const SlopeShape& slope);
 /// Circles and horseshoes as chords, counter-clockwise.
 Ring excavation_outline(const ExcavationSpec& spec);
 

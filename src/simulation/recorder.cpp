@@ -82,14 +82,6 @@ record::BreakMode mode_of(contact::BreakMode mode) {
   return mode == contact::BreakMode::opening ? record::BreakMode::opening : record::BreakMode::tension;
 }
 
-double strength_left(const contact::JointLaw& law, const contact::Memory& memory) {
-  if (law.fused || !law.may_break()) return 1.0;
-  // A joint that has opened has no cohesion any more; of its friction there is what slip has left.
-  const bool friction_falls = law.residual && law.residual->friction_coefficient < law.friction_coefficient;
-  if (law.may_bond() && !memory.bonded && !friction_falls) return 0.0;
-  return law.has_memory() && law.may_wear() ? law.share_left(memory.worn) : 1.0;
-}
-
 void put_strengths(const dynamics::Model& model, std::span<const contact::Contact> contacts,
                    std::span<record::ContactRecord> to) {
   for (std::size_t k = 0; k < contacts.size(); ++k) {
@@ -98,8 +90,8 @@ void put_strengths(const dynamics::Model& model, std::span<const contact::Contac
     to[k].cohesion = c.length > 0.0 ? c.cohesion / c.length : 0.0;
     to[k].tension = c.length > 0.0 ? c.tension / c.length : 0.0;
     const int edge = contact::bonded_edge(model.surface, model.laws, c);
-    to[k].strength_left =
-        strength_left(model.laws[at(model.surface.joint_of(edge, c.block_a, c.block_b))], c.memory);
+    to[k].strength_left = model.laws[at(model.surface.joint_of(edge, c.block_a, c.block_b))].strength_left(
+        c.memory.worn, c.memory.bonded);
   }
 }
 

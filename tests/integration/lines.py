@@ -2,6 +2,8 @@
 """Lines as other programs write them, and blocks that overlap: what `check`, `cut` and `run` say."""
 
 import json
+import math
+import random
 import shutil
 import unittest
 
@@ -47,10 +49,35 @@ class Lines(Scenario):
         done = self.keyblock("check", scenario, expect=1)
         self.assertRegex(done.stderr, r"degrees\.geojson:6:12: .* in degrees; .*ogr2ogr")
 
-    def test_a_drawing_is_named(self):
-        done = self.keyblock("check", self.mapped("lines.dxf"), expect=1)
-        self.assertEqual(done.stderr.count("\n"), 1)
-        self.assertRegex(done.stderr, r"lines\.dxf: found a drawing \(DXF\); expected GeoJSON, WKT, .*ogr2ogr")
+    def test_drawings(self):
+        for file in ("lines.dxf", "../drawings/lines.shp"):
+            scenario = self.mapped(file)
+            (self.folder / scenario).write_text((self.folder / scenario).read_text().replace("../drawings/", ""))
+            self.assertIn("4 blocks from 2 of 2 traces", self.keyblock("cut", scenario, "-o", "cut").stdout)
+
+    def test_a_drawn_face_map_is_its_geojson(self):
+        """The same traces, as GeoJSON in metres and as a drawing in millimetres about another origin, give the same blocks."""
+        x0, y0 = 466000.0, 6691570.0
+        draw = random.Random(7)
+        lines = []
+        for _ in range(700):
+            x, y, angle, length = x0 + draw.uniform(0, 20), y0 + draw.uniform(0, 20), draw.choice((0.3, 1.2, 2.2)) + draw.gauss(0, 0.1), draw.uniform(1, 6)
+            bend = angle + draw.gauss(0, 0.1)
+            middle = (x + length * math.cos(angle), y + length * math.sin(angle))
+            lines.append([(x, y), middle, (middle[0] + length * math.cos(bend), middle[1] + length * math.sin(bend))])
+        entities = "".join(
+            "0\nPOLYLINE\n8\nJOINTS\n" + "".join(f"0\nVERTEX\n10\n{1000 * (x - x0)!r}\n20\n{1000 * (y - y0)!r}\n" for x, y in line) + "0\nSEQEND\n" for line in lines
+        )
+        drawing = f"0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{entities}0\nENDSEC\n0\nEOF\n"
+        (self.folder / "face.dxf").write_text(drawing)
+        (self.folder / "face.geojson").write_text(json.dumps({"type": "MultiLineString", "coordinates": lines}))
+        extent = dict(x="[5.0, 15.0]", y="[5.0, 15.0]")
+        cuts = []
+        for name, more in ("face.dxf", ""), ("face.geojson", f"origin = [{x0}, {y0}]\n"):
+            self.keyblock("cut", self.lines(MAP.format(file=name) + more, **extent), "-o", "cut")
+            cuts.append([json.loads((self.folder / "cut/summary.json").read_text())[key] for key in ("blocks", "vertices", "joints")])
+        self.assertGreater(cuts[0][0], 1000)
+        self.assertEqual(cuts[0], cuts[1])
 
     def test_points(self):
         scenario = self.lines("""

@@ -19,6 +19,7 @@ PAGES = [
     "docs/cpp-api.md",
     "docs/faq.md",
     "docs/gallery.md",
+    "docs/guide/drawings.md",
     "docs/guide/joints.md",
     "docs/guide/limits.md",
     "docs/guide/loads.md",
@@ -41,6 +42,7 @@ PAGES = [
     "docs/vocabulary.md",
     "docs/tutorials/arch.md",
     "docs/tutorials/first-block.md",
+    "docs/tutorials/masonry.md",
     "docs/tutorials/own-tunnel.md",
     "docs/tutorials/study.md",
 ]

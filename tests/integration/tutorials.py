@@ -40,6 +40,9 @@ class Tutorials(unittest.TestCase):
     def test_slope(self):
         self.follow("slope")
 
+    def test_masonry(self):
+        self.follow("masonry")
+
     def test_arch(self):
         self.follow("arch")
 

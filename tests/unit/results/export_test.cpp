@@ -16,6 +16,7 @@
 #include "core/checked_json.h"
 #include "core/error.h"
 #include "debian_python.h"
+#include "drawing/drawing.h"
 #include "results/block_shape.h"
 #include "results/csv.h"
 #include "results/result_writer.h"
@@ -141,6 +142,25 @@ TEST(Export, GeoJsonOfEveryStageEnd) {
   EXPECT_EQ(rings[0].size(), 5U);
   EXPECT_EQ(rings[0].front(), rings[0].back());
   EXPECT_NEAR(rings[0][0][0].get<double>(), 466003.1 + 0.3, 1e-6);
+}
+
+// Read as a scenario reads drawings.
+TEST(Export, DrawingsOfEveryStageEnd) {
+  const FreshFolder folder;
+  const auto files = export_run(small_motions(), folder, ExportFormat::dxf);
+  ASSERT_THAT(files,
+              testing::ElementsAre(folder / "stage_1_in-situ.dxf", folder / "stage_2_first-earthquake.dxf"));
+  const drawing::Drawing first = drawing::read_drawing(read_file(files[0]), "1.dxf"),
+                         second = drawing::read_drawing(read_file(files[1]), "2.dxf");
+  EXPECT_TRUE(first.skipped.empty());
+  const auto fallen = drawing::lines_on(second, {"FALLEN"});
+  ASSERT_EQ(fallen.size(), 2U);  // its outline and its hole
+  EXPECT_TRUE(fallen[0].closed);
+  EXPECT_EQ(fallen[0].vertices.size(), 4U);
+  EXPECT_NEAR(fallen[0].vertices[0].x, 466003.1 + 0.3, 1e-6);
+  const auto joints = drawing::lines_on(first, {"JOINT_J_2"});
+  ASSERT_FALSE(joints.empty());
+  for (const drawing::DrawnLine& joint : joints) EXPECT_GE(joint.vertices.size(), 2U);
 }
 
 TEST(Export, GeoJsonOfAStageThatDidNotEndIsNamedSo) {

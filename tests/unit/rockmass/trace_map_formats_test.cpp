@@ -151,7 +151,6 @@ TEST_F(TraceMapFormats, WellKnownTextSaysWhereItsMistakeIs) {
 
 TEST_F(TraceMapFormats, FilesOfOtherKindsAreNamed) {
   const std::pair<std::string, const char*> files[] = {
-      {"\0\0\x27\x0a\0\0\0\0"s, "shapefile"},
       {"SQLite format 3\0"s, "GeoPackage"},
       {"AutoCAD Binary DXF\r\n\x1a\0"s, "binary DXF"},
       {"AC1032\0\0"s, "DWG"},
@@ -162,20 +161,34 @@ TEST_F(TraceMapFormats, FilesOfOtherKindsAreNamed) {
       {"<a/>", "XML"},
       {"PROJCS[\"ETRS89 / UTM 33\"]", ".prj"},
       {"\xFF\xFEt\0r\0"s, "UTF-16"},
-      {"\x03\x05\0\0\0abc"s, "no text"},
-      {"999\nmade by hand\n  0\nSECTION\n  2\nHEADER\n", "DXF"}};
+      {"\x03\x05\0\0\0abc"s, "no text"}};
   for (const auto& [content, name] : files) {
     const Diagnostic found = mistake(content);
     EXPECT_THAT(found.found, HasSubstr(name));
-    EXPECT_EQ(found.expected, "GeoJSON, WKT, or a table with the columns trace, x, y");
+    EXPECT_EQ(
+        found.expected,
+        "a drawing (ASCII DXF), a shapefile (.shp), GeoJSON, WKT, or a table with the columns trace, x, y");
     EXPECT_FALSE(found.hint.empty()) << name;
   }
-  try {
-    read_trace_map(samples / "lines.dxf", 0);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("a drawing (DXF)"), HasSubstr("ogr2ogr -f GeoJSON")));
-  }
+}
+
+TEST_F(TraceMapFormats, DrawingsAreReadAndPlaced) {
+  const std::vector<std::pair<Vec2, Vec2>> pieces{{{0, 5}, {10, 5}}, {{5, 0}, {5, 5}}, {{5, 5}, {6, 10}}};
+  EXPECT_EQ(ends(read_trace_map(samples / "lines.dxf", 0)), pieces);
+  const MapChoice turned{{"joints"}, {2.0, {10.0, 5.0}, 90.0}};
+  const std::vector<Trace> traces = read_trace_map(samples / "lines.dxf", 0, nullptr, turned);
+  ASSERT_EQ(traces.size(), 3U);
+  EXPECT_LT(norm(traces[0].a - Vec2{0.0, -20.0}), 1e-12);
+  EXPECT_LT(norm(traces[2].b - Vec2{-10.0, -8.0}), 1e-12);
+  EXPECT_THROW(read_trace_map(samples / "tabs.csv", 0, nullptr, {{"joints"}, {}}), InputError);
+}
+
+TEST_F(TraceMapFormats, ADegenerateEntityHasItsLineAndLayer) {
+  const Diagnostic found =
+      mistake("0\nSECTION\n2\nENTITIES\n0\nLINE\n8\nJ 1\n10\n5\n20\n5\n11\n5\n21\n5\n0\nENDSEC\n0\nEOF\n");
+  EXPECT_EQ(found.where.line, 6);
+  EXPECT_EQ(found.key, "LINE on layer J 1");
+  EXPECT_EQ(found.found, "a trace of one vertex");
 }
 
 TEST_F(TraceMapFormats, DegreesAreRefused) {

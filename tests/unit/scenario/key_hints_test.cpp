@@ -61,7 +61,7 @@ TEST(KeyHints, OfKeysThatBelongElsewhere) {
       {{"rock.kn=1",
         "'normal_stiffness' belongs to [joints], [[joint_set]], [[trace_map]], [rock_bridge], [[interface]]"},
        {"rock.dt=1", "'step' belongs to [time]"},
-       {"E=1", "'young' belongs to [rock], [[region]], [[block]], [[bolt]]"},
+       {"E=1", "'young' belongs to [rock], [[region]], [[block]], [[block_map]], [[bolt]]"},
        {"rock.units=1", "'units' belongs to the top of the file"},
        {"K0=1", "'k0' belongs to [in_situ]"},
        {"rock.fault=1", "[[trace_map]] is the table for that"},

@@ -117,7 +117,8 @@ TEST(Warnings, ThatAreAcceptedAreNamed) {
       HasSubstr(
           "accept_warnings[0]: found the string \"plane-stres\"; expected \"plane-stress\", \"order-1\", "
           "\"free-boundary\", \"step\", \"damping\", \"closed-box\", \"closed-ground\", \"late-falls\", "
-          "\"lost-joints\", \"loads\", \"scale\", \"window\", \"azimuth\" or \"direction\"; did you mean "
+          "\"lost-joints\", \"loads\", \"scale\", \"window\", \"azimuth\", \"direction\" or \"skipped\"; did "
+          "you mean "
           "'plane-stress'?"));
   EXPECT_THAT(mistakes(two_blocks, {"accept_warnings='step'"}), HasSubstr("write [\"step\"]"));
 }
