@@ -353,7 +353,7 @@ record::BreakRecord SampleRun::break_at(int stage, long step) {
   row.position = {noise(step, 1), noise(step, 2)};
   row.block_a = step % 4 == 0 ? -1 : 2;
   row.block_b = 1;
-  if (step % 3 == 0) {
+  if (step % 3 == 0 && model.elements.size() > 1) {
     row.element = 1;
   } else {
     row.length = std::abs(noise(step, 3));
