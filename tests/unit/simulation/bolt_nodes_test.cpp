@@ -134,7 +134,7 @@ TEST(BoltNodes, HaveTheSameBitsForAnyThreadsAndAfterAnInterruption) {
       record::RunObserver nobody;
       const record::RunRecord whole = run(scene.setup, {}, nobody);
       EXPECT_EQ(whole.stages.back().damage.ruptured_elements,
-                1);  // the dowel goes with its bar  // the bar at the joint and its dowel
+                1);  // the dowel goes with its bar
       EXPECT_LT(whole.energy.residual_ratio, 1e-3) << order;
       RunOptions threads;
       for (threads.threads = 2; threads.threads <= 4; threads.threads += 2)
