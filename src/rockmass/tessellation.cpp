@@ -53,16 +53,16 @@ void add_bricks(const Tessellation& t, Lines& lines) {
 }
 
 // A cell of a Voronoi diagram: edge k from vertex k to the next, behind which is point `beyond`, −1 for the side of the box.
-struct Cell {
+struct VoronoiCell {
   std::vector<Vec2> vertices;
   std::vector<int> beyond;
 };
 
 // Leaves of a convex cell what is nearer to `own` than to `other`.
-void clip(Cell& cell, Vec2 own, Vec2 other, int number) {
+void clip(VoronoiCell& cell, Vec2 own, Vec2 other, int number) {
   const Vec2 middle = 0.5 * (own + other), away = other - own;
   const std::size_t n = cell.vertices.size();
-  Cell left;
+  VoronoiCell left;
   for (std::size_t k = 0; k < n; ++k) {
     const Vec2 p = cell.vertices[k], q = cell.vertices[(k + 1) % n];
     const double at_p = dot(p - middle, away), at_q = dot(q - middle, away);
@@ -77,8 +77,8 @@ void clip(Cell& cell, Vec2 own, Vec2 other, int number) {
   cell = std::move(left);
 }
 
-Cell cell_of(const std::vector<Vec2>& points, std::size_t own, const Box& box) {
-  Cell cell{{box.min, {box.max.x, box.min.y}, box.max, {box.min.x, box.max.y}}, {-1, -1, -1, -1}};
+VoronoiCell cell_of(const std::vector<Vec2>& points, std::size_t own, const Box& box) {
+  VoronoiCell cell{{box.min, {box.max.x, box.min.y}, box.max, {box.min.x, box.max.y}}, {-1, -1, -1, -1}};
   const auto reach = [&] {
     double largest = 0.0;
     for (const Vec2 p : cell.vertices) largest = std::max(largest, squared_norm(p - points[own]));
@@ -106,7 +106,7 @@ void add_voronoi(const Tessellation& t, const RandomStream& random, Lines& lines
     points = std::move(moved);
   }
   for (std::size_t k = 0; k < count; ++k) {
-    const Cell cell = cell_of(points, k, box);
+    const VoronoiCell cell = cell_of(points, k, box);
     for (std::size_t e = 0; e < cell.vertices.size(); ++e) {
       if (cell.beyond[e] > static_cast<int>(k))
         add_inside(t.region, cell.vertices[e], cell.vertices[(e + 1) % cell.vertices.size()], lines);

@@ -13,7 +13,7 @@
 namespace keyblock::statistics {
 namespace {
 
-constexpr std::size_t groups = 20, most_classes = 6, size_of_class = 16;
+constexpr std::size_t index_groups = 20, most_classes = 6, size_of_class = 16;
 
 bool all_equal(std::span<const double> values) {
   return std::ranges::all_of(values, [&](double value) { return value == values.front(); });
@@ -84,18 +84,19 @@ Estimate first_order_index(std::span<const double> x, std::span<const double> y,
   const auto without = [&](std::size_t group) {
     std::vector<double> kept_x, kept_y;
     for (const std::size_t k : order) {
-      if (k % groups == group) continue;
+      if (k % index_groups == group) continue;
       kept_x.push_back(x[k]);
       kept_y.push_back(y[k]);
     }
     return index_of(kept_x, kept_y);
   };
-  const double index = without(groups);
+  const double index = without(index_groups);
   std::vector<double> left_out;
-  for (std::size_t group = 0; group < groups; ++group) left_out.push_back(without(group));
-  const double share = static_cast<double>(groups - 1) / static_cast<double>(groups),
-               deviation = standard_deviation(left_out) * std::sqrt(share * static_cast<double>(groups - 1)),
-               reach = student_t(confidence, static_cast<int>(groups) - 1) * deviation;
+  for (std::size_t group = 0; group < index_groups; ++group) left_out.push_back(without(group));
+  const double share = static_cast<double>(index_groups - 1) / static_cast<double>(index_groups),
+               deviation =
+                   standard_deviation(left_out) * std::sqrt(share * static_cast<double>(index_groups - 1)),
+               reach = student_t(confidence, static_cast<int>(index_groups) - 1) * deviation;
   const auto cut = [](double value) { return std::clamp(value, 0.0, 1.0); };
   return {cut(index), cut(index - reach), cut(index + reach)};
 }
