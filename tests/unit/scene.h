@@ -82,6 +82,11 @@ struct Stopper final : record::RunObserver {
   long after;
 };
 
+struct AllContacts final : record::RunObserver {
+  std::vector<record::ContactFrame> frames;
+  void contacts(const record::ContactFrame& frame) override { frames.push_back(frame); }
+};
+
 struct LastHistory final : record::RunObserver {
   record::HistoryRow last;
   int rows = 0;

@@ -11,11 +11,6 @@
 namespace keyblock::simulation {
 namespace {
 
-struct AllContacts final : record::RunObserver {
-  std::vector<record::ContactFrame> frames;
-  void contacts(const record::ContactFrame& frame) override { frames.push_back(frame); }
-};
-
 /// Contacts of a block that falls on a floor at y = 0, after every step.
 std::vector<record::ContactFrame> contacts_of_a_fall() {
   Scene scene(3e9, 30.0);

@@ -19,11 +19,6 @@ Scene held_by_peak_strength(double slip) {
   return scene;
 }
 
-struct AllContacts final : record::RunObserver {
-  std::vector<record::ContactFrame> frames;
-  void contacts(const record::ContactFrame& frame) override { frames.push_back(frame); }
-};
-
 double worn(const Simulator& s) {
   double most = 0.0;
   for (const contact::JointPiece& piece : s.state.contacts.pieces) most = std::max(most, piece.worn);
