@@ -192,6 +192,18 @@ void read_run_record(hid_t file, RunData& data) {
   }
 }
 
+void check_breaks(const RunData& data) {
+  const auto is_one_of = [](int number, std::size_t count) {
+    return number >= -1 && number < static_cast<int>(count);
+  };
+  for (const record::BreakRecord& row : data.breaks) {
+    if (!is_one_of(row.block_a, data.model.blocks.size()) ||
+        !is_one_of(row.block_b, data.model.blocks.size()) ||
+        !is_one_of(row.element, data.model.elements.size()))
+      throw RunError("breaks name blocks or elements that the model does not have");
+  }
+}
+
 // Whether the rows are those of the model.
 void check_rows(const RunData& data) {
   const std::size_t blocks = data.model.blocks.size();
@@ -211,12 +223,7 @@ void check_rows(const RunData& data) {
         throw RunError("contacts/block_a or block_b is out of range");
     }
   }
-  const auto is_end = [&](int block) { return block == -1 || known(block); };
-  for (const record::BreakRecord& row : data.breaks) {
-    if (!is_end(row.block_a) || !is_end(row.block_b) || row.element < -1 ||
-        row.element >= static_cast<std::int32_t>(data.model.elements.size()))
-      throw RunError("breaks name blocks or elements that the model does not have");
-  }
+  check_breaks(data);
   for (const record::HistoryRow& row : data.histories) {
     if (row.points.size() != data.model.history_names.size())
       throw RunError("histories/values does not fit histories/names");

@@ -35,6 +35,14 @@ bool for_bonds(const StepSystem& system, const Changes& changes) {
   return any;
 }
 
+/// By what a bond breaks that is about to.
+contact::BreakMode mode_of_break(const contact::Contact& contact, bool is_pulled) {
+  using enum contact::BreakMode;
+  if (is_pulled) return tension;
+  const bool loses = !contact.keeps_cohesion() || contact.loss.is_any() || contact.tension > 0.0;
+  return loses ? shear : none;  // of ideal plasticity slip takes nothing
+}
+
 }  // namespace
 
 void LawUpdates::begin() {
@@ -173,9 +181,7 @@ bool LawUpdates::break_bonds(const StepSystem& system, Iterate& iterate) {
     const bool holds =
         contact.is_ductile || is_spared || std::abs(springs.ks[c] * springs.w[c]) <= springs.bound[c];
     if (!is_pulled && holds) return false;
-    // Of ideal plasticity slip takes nothing.
-    if (!keeps_cohesion || is_pulled || contact.loss.is_any() || contact.tension > 0.0)
-      contact.broke = is_pulled ? contact::BreakMode::tension : contact::BreakMode::shear;
+    contact.broke = mode_of_break(contact, is_pulled);
     // A joint with residual strength keeps some cohesion until it has opened (ContactCoupling::account).
     if (!keeps_cohesion) {
       contact.memory.bonded = false;
