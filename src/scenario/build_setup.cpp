@@ -87,10 +87,11 @@ void place_loading(const Scenario& scenario, const BlockModel& blocks, RunSetup&
     bolt.head -= origin;
     bolt.toe -= origin;
   }
-  // What a stage installs that is left out never comes to life.
+  // What a stage installs that is left out never comes to life, and what is absent neither.
   for (const auto* stages : {&scenario.stages, &scenario.left_out})
     for (const record::Stage& stage : *stages)
       setup.staged_supports.insert(setup.staged_supports.end(), stage.install.begin(), stage.install.end());
+  setup.staged_supports.insert(setup.staged_supports.end(), scenario.absent.begin(), scenario.absent.end());
   const auto staged = [&](const std::string& name) {
     const auto place = std::ranges::find(setup.staged_supports, name);
     return place == setup.staged_supports.end() ? -1

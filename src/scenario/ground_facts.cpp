@@ -93,7 +93,7 @@ class Facts {
     for (const WaterSpec& spec : scenario_.waters) water(spec);
     loads();
     if (!scenario_.supports.empty()) add("supports", std::to_string(scenario_.supports.size()));
-    if (!scenario_.springs.empty()) add("springs", std::to_string(scenario_.springs.size()));
+    if (!scenario_.springs.empty()) add("springs", springs());
     for (const BoltSpec& spec : scenario_.bolts) bolts(spec);
     return std::move(facts_);
   }
@@ -136,6 +136,14 @@ class Facts {
     if (loads.size() > most_loads) add("more loads", std::to_string(loads.size() - most_loads));
   }
 
+  [[nodiscard]] std::string springs() const {
+    const auto absent = std::ranges::count_if(scenario_.springs, [&](const loading::Spring& spring) {
+      return std::ranges::find(scenario_.absent, spring.name) != scenario_.absent.end();
+    });
+    const std::string count = std::to_string(scenario_.springs.size());
+    return absent == 0 ? count : fmt::format("{}, {} of them not present", count, absent);
+  }
+
   void bolts(const BoltSpec& spec) {
     const loading::Bolt& bolt = spec.bolt;
     std::string text;
@@ -153,6 +161,7 @@ class Facts {
     for (const record::Stage& stage : scenario_.stages)
       if (std::ranges::find(stage.install, bolt.list) != stage.install.end())
         text += fmt::format(", from “{}” on", stage.name);
+    if (std::ranges::find(scenario_.absent, bolt.list) != scenario_.absent.end()) text += ", not present";
     add(quoted("bolts", bolt.list), std::move(text));
   }
 

@@ -1,6 +1,7 @@
 #include "scenario/load_checks.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -61,9 +62,32 @@ class LoadChecks {
     for (std::size_t k = 0; k < scenario_.supports.size(); ++k)
       check_way(join_path(join_element("support", scenario_.supports[k].name, k), "motion"),
                 scenario_.supports[k].motion_x, scenario_.supports[k].motion_y);
+    for (const record::Stage& stage : scenario_.stages) check_install(stage);
   }
 
  private:
+  /// An empty list reads as "without supports", and means the contrary for those that no other stage installs.
+  void check_install(const record::Stage& stage) {
+    const std::string path = join_path(join_path("stage", stage.name), "install");
+    const std::string place = place_text(scenario_, path);
+    if (!stage.install.empty() || place.empty()) return;
+    std::vector<std::string> there;
+    for (const loading::Spring& spring : scenario_.springs) there.push_back(spring.name);
+    for (const BoltSpec& spec : scenario_.bolts) there.push_back(spec.bolt.list);
+    std::erase_if(there, [&](const std::string& name) {
+      const auto installs = [&](const record::Stage& other) {
+        return std::ranges::find(other.install, name) != other.install.end();
+      };
+      return name.empty() || std::ranges::find(scenario_.absent, name) != scenario_.absent.end() ||
+             std::ranges::any_of(scenario_.stages, installs);
+    });
+    if (there.empty()) return;
+    warnings_.push_back(
+        fmt::format("{}{}: installs nothing, and {} is there from the start, as no stage installs it; "
+                    "present = false of a support leaves it out",
+                    path, place, fmt::join(there, ", ")));
+  }
+
   void check_strength(const std::string& path, const Load& load, const BlockSpec& block) {
     if (!is_weak(scenario_, load, block)) return;
     const double weight = weight_of(scenario_, block), force = norm(resultant(scenario_, load));

@@ -18,7 +18,7 @@ constexpr double most_nodes = 1000.0;  // of a bolt
 /// Reads a [[bolt]]; what keys are together is checked at the end.
 class BoltReader {
  public:
-  BoltReader(TableReader& t, BoltSpec& spec, const Scenario& scenario)
+  BoltReader(TableReader& t, BoltSpec& spec, Scenario& scenario)
       : t_(t), spec_(spec), bolt_(spec.bolt), scenario_(scenario) {}
 
   void read() {
@@ -29,6 +29,7 @@ class BoltReader {
              "NAME.1, "
              "NAME.2 and so on, counter-clockwise. A bolt that no stage installs is there from the start.",
          .required = true});
+    read_present(t_, bolt_.list, scenario_);
     read_place();
     read_bar();
     t_.word("kind", bolt_.is_anchored, bolt_kinds,
@@ -263,7 +264,7 @@ class BoltReader {
   TableReader& t_;
   BoltSpec& spec_;
   loading::Bolt& bolt_;
-  const Scenario& scenario_;
+  Scenario& scenario_;
   double diameter_ = 0.0;
 };
 

@@ -235,11 +235,12 @@ const BlockSpec* read_end(TableReader& t, std::string_view key, Vec2& point, std
   return block;
 }
 
-void read_spring(TableReader& t, Spring& spring, const Scenario& scenario) {
+void read_spring(TableReader& t, Spring& spring, Scenario& scenario) {
   t.name("name", spring.name, "spring",
          {.meaning = "Name, by which a stage installs it. A spring that no stage installs is there from the "
                      "start.",
           .fallback = "none"});
+  read_present(t, spring.name, scenario);
   const BlockSpec* from = read_end(t, "from", spring.from, "from_block", spring.from_block,
                                    "One end, a point of a block.", scenario);
   const BlockSpec* to = read_end(t, "to", spring.to, "to_block", spring.to_block,
@@ -265,6 +266,16 @@ void read_spring(TableReader& t, Spring& spring, const Scenario& scenario) {
 }
 
 }  // namespace
+
+void read_present(TableReader& t, const std::string& name, Scenario& scenario) {
+  bool is_present = true;
+  t.boolean("present", is_present,
+            {.meaning = "false: the run is without it, whatever stages install. So a study compares "
+                        "supports: `key = \"bolt.crown.present\"`, `values = [false, true]`."});
+  if (is_present) return;
+  if (name.empty()) t.fail("present", "false, of a support without a name", "a `name` as well");
+  scenario.absent.push_back(name);
+}
 
 void read_loading(TableReader& root, Scenario& scenario) {
   root.table(

@@ -54,7 +54,10 @@ void read_install(TableReader& t, Stage& stage, const Scenario& scenario) {
                            "springs and bolts by their names. They have no force as the rock lies then, but "
                            "pretension, and carry what comes later. Before, they are not there."});
   const std::vector<std::string>& names = t.context().list_names[std::string(names_of_supports)];
-  for (const int k : supports) stage.install.push_back(names[static_cast<std::size_t>(k)]);
+  for (const int k : supports) {
+    const std::string& name = names[static_cast<std::size_t>(k)];
+    if (std::ranges::find(scenario.absent, name) == scenario.absent.end()) stage.install.push_back(name);
+  }
   check_pretension(t, stage, scenario);
   for (const Stage& before : scenario.stages) {
     for (const std::string& name : before.install) {

@@ -300,6 +300,7 @@ struct Scenario {
   std::vector<simulation::History> histories;
   std::vector<record::Stage> stages;    ///< indices are those of `excavations` and `motions`
   std::vector<record::Stage> left_out;  ///< stages after that of [safety]
+  std::vector<std::string> absent;      ///< names of supports with present = false: no stage installs them
   std::optional<SafetySpec> safety;
   simulation::DamageLimits damage;
   simulation::OutputOptions output;

@@ -48,6 +48,8 @@ void read_drawn_outline(TableReader& t, ExcavationSpec& spec, const rockmass::Ma
 void read_boundary(TableReader& root, Scenario& scenario);
 /// [in_situ], [[motion]], [[load]], [[support]], [[spring]].
 void read_loading(TableReader& root, Scenario& scenario);
+/// `present` of a support, after its name: whether the run has it.
+void read_present(TableReader& t, const std::string& name, Scenario& scenario);
 /// [[bolt]], and the names of all that stages install.
 void read_bolts(TableReader& root, Scenario& scenario);
 /// [water], after all joints.

@@ -19,6 +19,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr double one_degree = std::numbers::pi / 180.0;
 
@@ -138,6 +139,26 @@ TEST(Bolts, ArePlacedByThePattern) {
   EXPECT_NEAR(setup.bolts[0].active_length, 0.05, 1e-15);
   EXPECT_THAT(setup.staged_supports, ::testing::ElementsAre("crown"));
   EXPECT_THAT(bolt_warnings({}), IsEmpty());
+}
+
+// They wait for a stage that does not come (Install.ASpringThatAStageWouldInstallLaterIsNotThere).
+TEST(Bolts, ThatAreNotPresentAreInstalledByNoStage) {
+  const simulation::RunSetup setup = build_setup(parse(bolted_rock, {"bolt.crown.present=false"}), 0);
+  ASSERT_EQ(setup.bolts.size(), 3u);
+  EXPECT_EQ(setup.bolts[0].staged, 0);
+  EXPECT_THAT(setup.staged_supports, ::testing::ElementsAre("crown"));
+  EXPECT_THAT(setup.stages[1].install, IsEmpty());
+  EXPECT_THAT(bolt_warnings({"bolt.crown.present=false"}), IsEmpty());
+  EXPECT_EQ(bolt_mistake({"bolt.crown.present=false", "bolt.crown.pretension=1e4"}), "");
+}
+
+TEST(Bolts, ThatAnEmptyListDoesNotLeaveOutAreToldOf) {
+  std::vector<std::string> all;
+  build_setup(parse(bolted_rock, {"stage.support.install=[]"}), 0, &all);
+  EXPECT_THAT(all, Contains(HasSubstr("installs nothing, and crown is there from the start")));
+  all.clear();
+  build_setup(parse(bolted_rock, {"stage.support.install=[]", "bolt.crown.present=false"}), 0, &all);
+  EXPECT_THAT(all, Not(Contains(HasSubstr("installs nothing"))));
 }
 
 TEST(Bolts, ThatCannotBeAreRefusedWhereTheyAreWritten) {
