@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cctype>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "core/error.h"
+#include "picture/marks.h"
 #include "picture/quantities.h"
 #include "scenario/key_path.h"
 
@@ -35,6 +37,12 @@ std::vector<std::string> names_of_quantities() {
   return names;
 }
 
+std::string help_of(std::string_view mark) {
+  std::string text = picture::mark_of(mark).meaning;
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
 }  // namespace
 
 void add_picture_arguments(CLI::App& command, PictureArguments& arguments) {
@@ -53,14 +61,14 @@ void add_picture_arguments(CLI::App& command, PictureArguments& arguments) {
       ->check(one_of(as_strings(picture::joint_words)))
       ->capture_default_str()
       ->type_name("NAME");
-  command.add_flag("--forces", o.forces, "Force chains: lines between blocks, as wide as the normal force");
-  command.add_flag("--stress", o.stress, "Crosses of the principal stresses");
-  command.add_flag("--thrust", o.thrust, "The line of thrust and hinges, of arches and columns");
+  command.add_flag("--forces", o.forces, help_of("forces"));
+  command.add_flag("--stress", o.stress, help_of("stress"));
+  command.add_flag("--thrust", o.thrust, help_of("thrust"));
   command.add_option("--arrows", o.arrows, "An arrow per block: none, displacement or velocity")
       ->check(one_of(as_strings(picture::arrow_words)))
       ->capture_default_str()
       ->type_name("NAME");
-  command.add_flag("--outline", o.outline, "The blocks as they were, over those as they are");
+  command.add_flag("--outline", o.outline, help_of("outline"));
   command.add_option("--exaggerate", o.exaggeration, "Factor on displacements, as drawn")
       ->check(CLI::Range(0.0, 1e6).description(""))
       ->capture_default_str()

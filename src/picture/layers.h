@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "picture/marks.h"
 #include "picture/picture.h"
 #include "picture/quantities.h"
 #include "picture/view.h"
@@ -17,16 +18,6 @@ struct Canvas {
   const Placement& place;
   double block_size;  ///< m: side of a mean block
 };
-
-/// Sizes that are drawn with a usual width or length: the 95th percentile of the run.
-struct Typical {
-  double force = 0.0;   ///< N per thickness
-  double stress = 0.0;  ///< Pa
-  double arrow = 0.0;   ///< m or m/s
-};
-
-// Widths and lengths of marks whose size is the typical one: units of a picture, or sides of a mean block.
-inline constexpr double force_width = 4.0, cross_length = 1.2, arrow_length = 2.0, longest_arrow = 3.0;
 
 std::string draw_fixed(const Canvas& canvas);
 std::string draw_blocks(const Canvas& canvas, const BlockValues& values, const std::vector<double>& now);

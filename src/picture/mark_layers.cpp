@@ -37,7 +37,7 @@ std::string draw_forces(const Canvas& canvas, const record::ContactFrame& contac
   std::map<long, std::string> paths;
   for (const ForceChain& chain : force_chains(contacts)) {
     if (chain.force < least * typical) continue;
-    const double width = force_width * std::min(chain.force / typical, most);
+    const double width = mark_of("forces").drawn * std::min(chain.force / typical, most);
     std::string& path = paths[std::max(1L, std::lround(steps_of_width * width))];
     const Vec2 middle = where_drawn(canvas, chain);
     canvas.view.point(path, 'M', end_at(canvas, chain.block_a, middle));
@@ -77,7 +77,8 @@ std::string draw_crosses(const Canvas& canvas, double typical) {
     const Principal p = principal_of(frame.stress[b]);
     const Vec2 middle = canvas.place.middle(b), along{std::cos(p.angle), std::sin(p.angle)};
     const auto bar = [&](double stress, Vec2 direction) {
-      const Vec2 half = 0.5 * cross_length * canvas.block_size * std::abs(stress) / typical * direction;
+      const Vec2 half =
+          0.5 * mark_of("stress").drawn * canvas.block_size * std::abs(stress) / typical * direction;
       canvas.view.line(stress < 0.0 ? compression : tension, middle - half, middle + half);
     };
     bar(p.larger, along);
@@ -88,15 +89,16 @@ std::string draw_crosses(const Canvas& canvas, double typical) {
 
 std::string draw_arrows(const Canvas& canvas, const std::vector<Vec2>& vectors, double typical) {
   constexpr double least = 0.125, head = 0.3, slope = 0.5;
+  const double length_of_arrows = mark_of("displacement").drawn;
   std::string path;
   for (std::size_t b = 0; b < vectors.size(); ++b) {
     const double size = norm(vectors[b]) / typical;
     if (!canvas.place.is_drawn(b) || !(size > least)) continue;
     // What has fallen has gone farther than any arrow could show.
     if (canvas.place.frame().status[b] == record::BlockStatus::fallen) continue;
-    const double length = arrow_length * canvas.block_size * std::min(size, longest_arrow);
+    const double length = length_of_arrows * canvas.block_size * std::min(size, longest_arrow);
     const Vec2 along = normalized(vectors[b]), from = canvas.place.middle(b), tip = from + length * along;
-    const double back = head * std::min(length, arrow_length * canvas.block_size);
+    const double back = head * std::min(length, length_of_arrows * canvas.block_size);
     canvas.view.line(path, from, tip);
     canvas.view.point(path, 'M', tip - back * along + slope * back * perpendicular(along));
     canvas.view.point(path, 'L', tip);

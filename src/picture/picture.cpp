@@ -10,6 +10,7 @@
 #include "picture/force_chains.h"
 #include "picture/layers.h"
 #include "picture/legend.h"
+#include "picture/marks.h"
 
 namespace keyblock::picture {
 namespace {
@@ -17,7 +18,6 @@ namespace {
 constexpr double page_width = 1280.0, legend_width = 270.0, edge = 24.0, head = 70.0, foot = 56.0;
 constexpr double most_height = 860.0, least_height = 520.0;
 constexpr int font_size = 15;
-constexpr double usual_share = 0.95;
 
 double mean_block_size(const record::ModelRecord& model) {
   double area = 0.0;
@@ -82,30 +82,15 @@ class SectionPicture::Parts {
     return 2.0 * std::ceil(0.5 * (head + std::max(view_.height(), least_height) + foot));
   }
 
-  // What is drawn with the usual width or length.
   void measure() {
-    std::vector<double> forces, stresses, arrows;
     for (const std::size_t f : stage_end_frames(run_)) {
-      const Placement place(run_, run_.frames[f], 1.0);
-      if (const auto* contacts = contacts_at(run_, f); contacts != nullptr && needs_forces())
-        for (const ForceChain& chain : force_chains(*contacts)) forces.push_back(chain.force);
       measure_joints(f);
-      for (std::size_t b = 0; b < run_.model.blocks.size(); ++b) {
-        if (!place.is_drawn(b)) continue;
-        const Principal p = principal_of(run_.frames[f].stress[b]);
-        stresses.push_back(std::max(std::abs(p.larger), std::abs(p.smaller)));
-      }
       for (std::size_t k = 0; k < run_.frames[f].elements.size(); ++k)
         if (!std::isfinite(run_.model.elements[k].limit))
           largest_free_ = std::max(largest_free_, std::abs(run_.frames[f].elements[k].force));
     }
-    measure_arrows(arrows);
     joint_scale_ = scale_of_joints(largest_at_joints_);
-    const auto usual = [](std::vector<double>& values) {
-      const double found = quantile(values, usual_share);
-      return found > 0.0 ? found : 1.0;
-    };
-    typical_ = {usual(forces), usual(stresses), usual(arrows)};
+    if (needs_forces() || options_.stress || options_.arrows != "none") typical_ = typical_sizes(run_);
   }
 
   void measure_joints(std::size_t frame) {
@@ -114,20 +99,6 @@ class SectionPicture::Parts {
     for (const record::ContactRecord& c : contacts->contacts)
       if (c.label.kind != cutting::EdgeKind::domain)
         largest_at_joints_ = std::max(largest_at_joints_, options_.joints == "opening" ? c.gap : c.slip());
-  }
-
-  void measure_arrows(std::vector<double>& arrows) const {
-    if (options_.arrows == "none") return;
-    constexpr std::size_t samples = 12;
-    for (std::size_t k = 0; k < samples; ++k) {
-      const std::size_t f = k * (run_.frames.size() - 1) / (samples - 1);
-      const Placement place(run_, run_.frames[f], 1.0);
-      const std::vector<Vec2> vectors = arrows_of(f);
-      for (std::size_t b = 0; b < vectors.size(); ++b)
-        if (place.is_drawn(b) && run_.frames[f].status[b] != record::BlockStatus::fallen &&
-            norm(vectors[b]) > 0.0)
-          arrows.push_back(norm(vectors[b]));
-    }
   }
 
   [[nodiscard]] bool needs_forces() const { return options_.forces || options_.thrust; }
@@ -148,7 +119,7 @@ class SectionPicture::Parts {
     if (options_.forces && contacts != nullptr) svg += draw_forces(canvas, *contacts, typical_.force);
     if (options_.stress) svg += draw_crosses(canvas, typical_.stress);
     svg += draw_elements(canvas, largest_free_);
-    if (options_.arrows != "none") svg += draw_arrows(canvas, arrows_of(frame), typical_.arrow);
+    if (options_.arrows != "none") svg += draw_arrows(canvas, arrows_of(frame), typical_.of(options_.arrows));
     if (options_.thrust && contacts != nullptr) svg += draw_thrust(canvas, *contacts, typical_.force);
     return svg;
   }
@@ -216,22 +187,24 @@ class SectionPicture::Parts {
   void mark_legend(LegendColumn& column) const {
     if (options_.forces) {
       const double force = nice_above(0.6 * typical_.force);
-      column.line(force_color, force_width * force / typical_.force, 30.0,
+      column.line(force_color, mark_of("forces").drawn * force / typical_.force, 30.0,
                   "force between blocks: " + with_unit(force, Quantity::force));
     }
     const auto length = [&](double sides, double share) { return sides * share * block_size_ * view_.scale; };
     if (options_.stress) {
       const double stress = nice_above(0.6 * typical_.stress);
-      column.line(compression_color, 1.5, length(cross_length, stress / typical_.stress),
+      column.line(compression_color, 1.5, length(mark_of("stress").drawn, stress / typical_.stress),
                   "compression of " + with_unit(stress, Quantity::stress));
-      column.line(tension_color, 1.5, length(cross_length, stress / typical_.stress), "tension, the same");
+      column.line(tension_color, 1.5, length(mark_of("stress").drawn, stress / typical_.stress),
+                  "tension, the same");
     }
     if (options_.arrows != "none") {
       const Quantity of = options_.arrows == "velocity" ? Quantity::velocity : Quantity::length;
-      const double size = nice_above(0.6 * typical_.arrow);
-      column.line(arrow_color, 1.6, length(arrow_length, size / typical_.arrow),
+      const double size = nice_above(0.6 * typical_.of(options_.arrows));
+      column.line(arrow_color, 1.6,
+                  length(mark_of(options_.arrows).drawn, size / typical_.of(options_.arrows)),
                   fmt::format("{} of {}; cut at {}", options_.arrows, with_unit(size, of),
-                              with_unit(longest_arrow * typical_.arrow, of, 2)));
+                              with_unit(longest_arrow * typical_.of(options_.arrows), of, 2)));
     }
     if (options_.thrust) {
       column.line(outline_color, 2.5, 30.0, "line of thrust");

@@ -34,7 +34,14 @@ export class Animation {
     this.view = new SectionView(
       run,
       fields,
-      { moment: clock.moment, since, exaggeration: 1, blocks: "displacement", joints: "plain" },
+      {
+        moment: clock.moment,
+        since,
+        exaggeration: 1,
+        blocks: "displacement",
+        joints: "plain",
+        marks: "none",
+      },
       { axes: true, label: "Block system at the moment of the animation", minHeight: 260, maxHeight: 860 },
     );
     this.slider = h("input", {
@@ -101,6 +108,7 @@ export class Animation {
       choice("Joints by", jointFields(this.run), look.joints, (v) =>
         change(() => (look.joints = v as JointField)),
       ),
+      choice("Over them", this.fields.marks.choices(), look.marks, (v) => change(() => (look.marks = v))),
       choice("Displacement since", sinceChoices(this.run), String(look.since), (v) =>
         change(() => (look.since = Number(v))),
       ),
@@ -242,6 +250,7 @@ export class Animation {
       this.fields.blockLegend(look.blocks, look.since),
       this.fields.jointLegend(look.joints),
       this.fields.elements.legend(),
+      this.fields.marks.legend(look.marks),
     ];
     this.legends.replaceChildren(...legends.filter((l) => l !== null).map(legendElement));
   }

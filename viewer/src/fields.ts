@@ -1,6 +1,7 @@
 import { magma, mako, palette, place, table, viridis, type Rgb, type Scale } from "./colors";
 import { css } from "./dom";
 import { Elements } from "./elements";
+import { Marks } from "./marks";
 import { length, niceAbove, stress } from "./format";
 import { EdgeKind, Run, Status, statusNames, type Moment } from "./run";
 
@@ -147,9 +148,11 @@ export class Fields {
   private stateStyles: { name: string; color: string; width: number }[] = [];
   private plain = "";
   readonly elements: Elements;
+  readonly marks: Marks;
 
   constructor(readonly run: Run) {
     this.elements = new Elements(run);
+    this.marks = new Marks(run);
     this.readTheme();
   }
 
@@ -310,6 +313,8 @@ export class Fields {
   /** Colour and width (px) of a joint piece; null: not drawn. */
   pieceStyle(field: JointField, piece: number): { color: string; width: number } | null {
     const { run } = this;
+    // The edge of the domain is no joint: a frame without friction would seem to slide all round.
+    if (run.edgeKind[run.pieceVertex[piece]] === EdgeKind.domain) return null;
     if (isNumber(field)) {
       const scale = this.pieceScale(field);
       const value = this.piecesBy(field)[piece];

@@ -26,7 +26,7 @@ export class FinalPicture {
     this.view = new SectionView(
       run,
       fields,
-      { moment, since, exaggeration: 1, blocks, joints: "plain" },
+      { moment, since, exaggeration: 1, blocks, joints: "plain", marks: "none" },
       { axes: true, label: `Block system at the end: ${title}`, maxHeight: mostHeight },
     );
     const legends = [fields.blockLegend(blocks, since), fields.elements.legend()].filter((l) => l !== null);

@@ -75,6 +75,11 @@ export function stress(pa: Number_, digits = 3): string {
   return `${significant(pa / 1e6, digits)} MPa`;
 }
 
+/** A speed in mm/s or m/s. */
+export function speed(v: Number_, digits = 3): string {
+  return `${length(v, digits)}/s`;
+}
+
 export function duration(s: Number_): string {
   if (!present(s)) return missing;
   if (s < 120) return `${significant(s, 3)} s`;

@@ -33,6 +33,7 @@ export class Pictures {
       exaggeration: 1,
       blocks: "displacement",
       joints: "plain",
+      marks: "none",
     };
     this.dialog = h("dialog", {
       class: "large-picture",
@@ -86,6 +87,7 @@ export class Pictures {
       choice("Joints by", jointFields(this.run), look.joints, (v) =>
         change(() => (look.joints = v as JointField)),
       ),
+      choice("Over them", this.fields.marks.choices(), look.marks, (v) => change(() => (look.marks = v))),
       choice("Displacement since", sinceChoices(this.run), String(look.since), (v) =>
         change(() => (look.since = Number(v))),
       ),
@@ -157,6 +159,7 @@ export class Pictures {
       this.fields.blockLegend(look.blocks, look.since),
       this.fields.jointLegend(look.joints),
       this.fields.elements.legend(),
+      this.fields.marks.legend(look.marks),
     ]
       .filter((l) => l !== null)
       .map(legendElement);

@@ -14,6 +14,8 @@ export interface Look {
   exaggeration: number;
   blocks: BlockField;
   joints: JointField;
+  /** A name of src/picture/marks.h, or "none". */
+  marks: string;
 }
 
 const axisFont = 11; // px
@@ -223,6 +225,7 @@ export class SectionView {
       (x, y) => [this.ax + this.scaleNow * x, this.ay - this.scaleNow * y],
       this.options.axes ? 1 : 0.6,
     );
+    this.drawMarks();
     this.drawMarked();
     this.drawOutside();
     c.restore();
@@ -346,6 +349,20 @@ export class SectionView {
       c.stroke(path);
     }
     c.lineCap = "butt";
+  }
+
+  private drawMarks(): void {
+    this.fields.marks.draw(this.look.marks, {
+      context: this.context,
+      moment: this.look.moment,
+      since: this.look.since,
+      u: this.u,
+      before: this.since,
+      drawn: this.drawn,
+      toPixel: (x, y) => [this.ax + this.scaleNow * x, this.ay - this.scaleNow * y],
+      scale: this.scaleNow,
+      fine: this.options.axes ? 1 : 0.7,
+    });
   }
 
   private drawMarked(): void {
