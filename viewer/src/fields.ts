@@ -379,6 +379,16 @@ export class Fields {
     }
   }
 
+  /** All legends of what is shown. */
+  legends(look: { blocks: BlockField; joints: JointField; marks: string; since: Moment }): Legend[] {
+    return [
+      this.blockLegend(look.blocks, look.since),
+      this.jointLegend(look.joints),
+      this.elements.legend(),
+      this.marks.legend(look.marks),
+    ].filter((l) => l !== null);
+  }
+
   jointLegend(field: JointField): Legend | null {
     const { model } = this.run.header;
     switch (field) {

@@ -105,6 +105,12 @@ export function list(items: readonly string[]): string {
   return `${items.slice(0, -1).join(", ")} and ${items[items.length - 1]}`;
 }
 
+/** Of 1, 2, 5 times a power of ten: the largest that is not above x > 0. */
+export function niceBelow(x: number): number {
+  const power = 10 ** Math.floor(Math.log10(x) + 1e-9);
+  return [5, 2].map((m) => m * power).find((v) => v <= x * (1 + 1e-9)) ?? power;
+}
+
 /** Of the numbers 1, 2, 5 times a power of ten: the smallest that is not below x. */
 export function niceAbove(x: number): number {
   const power = 10 ** Math.floor(Math.log10(x));

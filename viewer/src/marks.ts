@@ -3,6 +3,7 @@ import type { MarkInHeader } from "./data";
 import type { Legend } from "./fields";
 import { blockDisplacement, principal } from "./fields";
 import { length, significant, speed, stress } from "./format";
+import { newPath } from "./save/path";
 import { Status, type Moment, type Run } from "./run";
 
 type Point = [number, number];
@@ -142,7 +143,7 @@ export class Marks {
       if (share < 0.01) continue;
       // Widths are for pictures of 1280 units; those of the page are smaller.
       const width = Math.max(1, Math.round(5 * 0.75 * mark.drawn * Math.min(share, 2)));
-      const path = paths.get(width) ?? new Path2D();
+      const path = paths.get(width) ?? newPath();
       paths.set(width, path);
       const [a, b] = [run.chainBlock[2 * k], run.chainBlock[2 * k + 1]];
       const at: Point = [run.chainMiddle[2 * k], run.chainMiddle[2 * k + 1]];
@@ -157,8 +158,8 @@ export class Marks {
   }
 
   private crosses(mark: MarkInHeader, canvas: MarkCanvas): void {
-    const compression = new Path2D();
-    const tension = new Path2D();
+    const compression = newPath();
+    const tension = newPath();
     for (let b = 0; b < this.run.blockCount; b++) {
       if (!this.isShown(canvas.moment, b)) continue;
       const p = principal(this.run.stressAt(canvas.moment, b));
@@ -179,7 +180,7 @@ export class Marks {
   }
 
   private arrows(mark: MarkInHeader, canvas: MarkCanvas, vector: (block: number) => Point): void {
-    const path = new Path2D();
+    const path = newPath();
     const unit = mark.drawn * this.blockSize * canvas.scale;
     for (let b = 0; b < this.run.blockCount; b++) {
       if (!this.isShown(canvas.moment, b) || this.run.statusAt(canvas.moment, b) === Status.fallen) continue;
@@ -203,7 +204,7 @@ export class Marks {
 
   private outline(mark: MarkInHeader, canvas: MarkCanvas): void {
     const { run } = this;
-    const path = new Path2D();
+    const path = newPath();
     for (let r = 0; r < run.ringBegin.length; r++) {
       if (!this.isShown(canvas.moment, run.ringBlock[r])) continue;
       for (let v = run.ringBegin[r]; v < run.ringEnd[r]; v++) {
@@ -222,7 +223,7 @@ export class Marks {
     const [begin, end] = run.chainsAt(canvas.moment);
     const ofBlock = new Map<number, number[]>();
     const at = (k: number): Point => [run.chainMiddle[2 * k], run.chainMiddle[2 * k + 1]];
-    const dots = new Path2D();
+    const dots = newPath();
     for (let k = begin; k < end; k++) {
       const blocks = [run.chainBlock[2 * k], run.chainBlock[2 * k + 1]];
       for (const b of blocks) ofBlock.set(b, [...(ofBlock.get(b) ?? []), k]);
@@ -233,7 +234,7 @@ export class Marks {
       dots.moveTo(x, y);
       dots.lineTo(x + 0.01, y);
     }
-    const line = new Path2D();
+    const line = newPath();
     for (const [b, chains] of ofBlock) {
       if (run.fixed[b] || chains.length !== 2) continue;
       if (Math.max(...chains.map((k) => run.chainForce[k])) < 0.01 * mark.typical) continue;

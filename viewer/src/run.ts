@@ -20,6 +20,9 @@ export const enum EdgeKind {
 /** Moments at which the page shows the blocks: a fractional index into the frames, −1 for the reference position. */
 export type Moment = number;
 
+/** How much larger the picture may be than the rock, for blocks that have moved. */
+const mostGrowth = 2;
+
 /** The results of one run, with the questions that the figures ask. */
 export class Run {
   readonly stages: Stage[];
@@ -254,7 +257,8 @@ export class Run {
 
   /**
    * What to show of the plane: the rock, of the frame around it only a margin, and the blocks that lie elsewhere when a stage
-   * ends. Not those so far away that they, or all else, would hardly be seen.
+   * ends. Not those so far away that all else would hardly be seen: pictures are scaled to the structure, not to the stone that flew
+   * farthest.
    */
   get extent(): Box {
     return (this.extentFound ??= this.findExtent());
@@ -277,7 +281,7 @@ export class Run {
         if (this.fixed[b] || this.statusAt(frame, b) === Status.excavated) continue;
         const block = widened(this.boxOfBlock(b, at), margin);
         const both = union(start, block);
-        if (sizeOf(both) <= Math.max(2 * sizeOf(start), 30 * sizeOf(block))) extent = union(extent, both);
+        if (sizeOf(both) <= mostGrowth * sizeOf(start)) extent = union(extent, both);
       }
     }
     return extent;
