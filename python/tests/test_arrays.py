@@ -46,7 +46,7 @@ def work(): scenario._core.set_toml("motion", "[{ name = 'm', x = " + toml + " }
 
 
 def measured(code: str) -> list[float]:
-    """Seconds of work, of one value after it, of pickling and back, and MB that all that took."""
+    """Times of work, of one value after it, of pickling and back, over that of a million additions in Python; MB that all that took."""
     program = f"""
 import pickle, resource, time
 import numpy as np, keyblock as kb
@@ -56,6 +56,7 @@ scenario = kb.Scenario(rock)
 peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 before = peak()
 seconds = []
+def additions(): sum(k * k for k in range(1_000_000))
 def timed(call):
     begin = time.process_time(); call(); seconds.append(time.process_time() - begin)
 timed(work)
@@ -63,7 +64,9 @@ def one_value(): scenario.joints.friction = 30.0
 timed(one_value)
 def there_and_back(): assert pickle.loads(pickle.dumps(scenario)).to_dict() == scenario.to_dict()
 timed(there_and_back)
-print(*seconds, peak() - before)
+used = peak() - before
+timed(additions)
+print(*(s / seconds[-1] for s in seconds[:-1]), used)
 """
     done = subprocess.run([sys.executable, "-c", program], env={"PYTHONPATH": str(BUILT), "PATH": ""}, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
@@ -73,7 +76,8 @@ print(*seconds, peak() - before)
 @pytest.mark.parametrize("code", [MOTION, TRACES, BLOCKS, APPENDED, AS_TOML], ids=["motion", "traces", "blocks", "appended", "toml"])
 def test_arrays_cost_what_arrays_cost(code: str) -> None:
     work, one_value, pickled, memory = measured(code)
-    assert work < 1.0 and one_value < 0.01 and pickled < 1.0 and memory < 200.0
+    # What is done per item again and again takes hundreds of times as much.
+    assert work < 60.0 and one_value < 0.2 and pickled < 60.0 and memory < 200.0
 
 
 def test_long_records_run_and_are_the_same_bits_as_text(tmp_path: Path) -> None:

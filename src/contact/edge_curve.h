@@ -12,6 +12,8 @@ namespace keyblock::contact {
 struct EdgeDivision {
   std::vector<double> points;
   std::vector<double> scales;  ///< of Lagrange's polynomials through them: 1 / Π (p_j − p_i)
+  /// By rows: from the values of a polynomial at the points to its coefficients on Bernstein's polynomials of the same degree.
+  std::vector<double> bernstein;
   explicit EdgeDivision(std::vector<double> ascending);
 };
 

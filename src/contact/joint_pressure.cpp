@@ -55,18 +55,6 @@ double find_zero(const EdgeDivision& division, std::span<const double> y, double
   return zero;
 }
 
-/// Calls of_cell(from, to, closure at both) for the cells in which the sign of the closure is looked at: halves of what is between points.
-template <typename OfCell>
-void for_cells(const EdgeDivision& division, std::span<const double> y, const OfCell& of_cell) {
-  const std::vector<double>& points = division.points;
-  if (y.size() == 2) return of_cell(0.0, 1.0, y[0], y[1]);
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const double middle = 0.5 * (points[i] + points[i + 1]), at_middle = closure_at(division, y, middle);
-    of_cell(points[i], middle, y[i], at_middle);
-    of_cell(middle, points[i + 1], at_middle, y[i + 1]);
-  }
-}
-
 /// A force at s, to the two points that it is between, as a beam on them bears it.
 void add_between(const std::vector<double>& points, double s, double force, std::span<double> bearing) {
   std::size_t i = 0;
@@ -76,16 +64,90 @@ void add_between(const std::vector<double>& points, double s, double force, std:
   bearing[i + 1] += share * force;
 }
 
-enum class Closed { all, none, partly };
+struct Part {
+  double from, to;
+};
 
-Closed closed_part(const EdgeDivision& division, std::span<const double> y) {
-  bool any = false, all = true;
-  for_cells(division, y, [&](double /*from*/, double /*to*/, double at_from, double at_to) {
-    any = any || at_from > 0.0 || at_to > 0.0;
-    all = all && at_from >= 0.0 && at_to >= 0.0;
-  });
-  return any ? all ? Closed::all : Closed::partly : Closed::none;
-}
+/// Where the joint is closed, in ascending order.
+class ClosedParts {
+ public:
+  ClosedParts(const EdgeDivision& division, std::span<const double> y) : division_(division), y_(y) {
+    if (y.size() == 2) {
+      find_between(0.0, 1.0, y[0], y[1]);
+      return;
+    }
+    Shares coefficients{};
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      for (std::size_t j = 0; j < y.size(); ++j)
+        coefficients[i] += division.bernstein[i * y.size() + j] * y[j];
+    }
+    coefficients[0] = y.front();
+    coefficients[y.size() - 1] = y.back();
+    find(0.0, 1.0, coefficients, 0);
+  }
+
+  [[nodiscard]] std::span<const Part> parts() const { return std::span(parts_).first(count_); }
+  [[nodiscard]] bool is_none() const { return count_ == 0; }
+  [[nodiscard]] bool is_all() const { return count_ == 1 && parts_[0].from == 0.0 && parts_[0].to == 1.0; }
+
+ private:
+  /// Of a part in halves of halves. What a double zero that is missed then leaves out is 2^-72 of the force.
+  static constexpr int most_halvings = 24;
+
+  void add(double from, double to) {
+    if (count_ > 0 && parts_[count_ - 1].to == from) {
+      parts_[count_ - 1].to = to;
+    } else {
+      parts_[count_++] = {from, to};
+    }
+  }
+
+  /// Where there is one zero at most.
+  void find_between(double from, double to, double at_from, double at_to) {
+    if (at_from <= 0.0 && at_to <= 0.0) return;
+    if (at_from >= 0.0 && at_to >= 0.0) return add(from, to);
+    const double zero = find_zero(division_, y_, from, to, at_from, at_to);
+    if (at_from > 0.0) {
+      add(from, zero);
+    } else {
+      add(zero, to);
+    }
+  }
+
+  /// A polynomial has no more zeros than its coefficients on Bernstein's polynomials have changes of sign. Signs at some places alone would not show a
+  /// stretch that opens between two of them: the forces would jump when it comes to reach one.
+  void find(double from, double to, const Shares& coefficients, int halvings) {
+    const std::size_t n = y_.size();
+    std::size_t changes = 0;
+    double last = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (coefficients[i] == 0.0) continue;
+      changes += (last < 0.0 && coefficients[i] > 0.0) || (last > 0.0 && coefficients[i] < 0.0);
+      last = coefficients[i];
+    }
+    if (changes == 0) {
+      if (last > 0.0) add(from, to);
+      return;
+    }
+    const double at_from = coefficients[0], at_to = coefficients[n - 1];
+    if (changes == 1 && at_from != 0.0 && at_to != 0.0) return find_between(from, to, at_from, at_to);
+    if (halvings == most_halvings) return find_between(from, to, at_from, at_to);
+    // De Casteljau: what is left of each round are the coefficients of both halves.
+    Shares left, right = coefficients;
+    for (std::size_t k = 0; k < n; ++k) {
+      left[k] = right[0];
+      for (std::size_t i = 0; i + k + 1 < n; ++i) right[i] = 0.5 * (right[i] + right[i + 1]);
+    }
+    const double middle = 0.5 * (from + to);
+    find(from, middle, left, halvings + 1);
+    find(middle, to, right, halvings + 1);
+  }
+
+  const EdgeDivision& division_;
+  std::span<const double> y_;
+  std::array<Part, JointPressure::most_points> parts_;
+  std::size_t count_ = 0;
+};
 
 }  // namespace
 
@@ -106,19 +168,8 @@ void JointPressure::for_closed_points(std::span<const double> y, const OfPoint& 
       of_point((to - from) * rule.weights[q], s, shares);
     }
   };
-  const Closed closed = pulls_ ? Closed::all : closed_part(*points_, y);
-  if (closed == Closed::all) return add(0.0, 1.0);
-  if (closed == Closed::none) return;
-  for_cells(*points_, y, [&](double from, double to, double at_from, double at_to) {
-    if (at_from <= 0.0 && at_to <= 0.0) return;
-    if (at_from >= 0.0 && at_to >= 0.0) return add(from, to);
-    const double zero = find_zero(*points_, y, from, to, at_from, at_to);
-    if (at_from > 0.0) {
-      add(from, zero);
-    } else {
-      add(zero, to);
-    }
-  });
+  if (pulls_) return add(0.0, 1.0);
+  for (const Part& part : ClosedParts(*points_, y).parts()) add(part.from, part.to);
 }
 
 void JointPressure::forces(std::span<const double> y, std::span<double> force) const {
@@ -150,8 +201,8 @@ void JointPressure::tangent(std::span<const double> y, std::span<double> h) cons
 
 bool JointPressure::is_linear_between(std::span<const double> from, std::span<const double> to) const {
   if (pulls_) return true;
-  const Closed closed = closed_part(*points_, from);
-  return closed != Closed::partly && closed == closed_part(*points_, to);
+  const ClosedParts before(*points_, from), after(*points_, to);
+  return (before.is_all() && after.is_all()) || (before.is_none() && after.is_none());
 }
 
 }  // namespace keyblock::contact

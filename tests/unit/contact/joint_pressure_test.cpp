@@ -117,6 +117,35 @@ TEST(JointPressure, OfEvenPressureHasTheWeightsOfTheRule) {
   }
 }
 
+// Both ends and the middle of each half press, and the joint is open between: the rule of rectangles sees it.
+TEST(JointPressure, SeesAStretchThatOpensBetweenItsContacts) {
+  for (const int points : {3, 5}) {
+    const EdgeDivision& division = divided(points);
+    const JointPressure joint(full_stiffness, division, false);
+    for (const double shift : {-0.0030, -0.0025, -0.0020, 0.0, 0.0010, 0.0024, 0.0026, 0.01}) {
+      SCOPED_TRACE(testing::Message() << points << " points, " << shift);
+      const auto closure = [&](double s) { return (s - 0.1) * (s - 0.2) + shift; };
+      std::vector<double> y;
+      for (const double s : division.points) y.push_back(closure(s));
+      double expected = 0.0, moment = 0.0;
+      constexpr int count = 100'000;
+      for (int k = 0; k < count; ++k) {
+        const double s = (k + 0.5) / count, pressure = full_stiffness * std::max(closure(s), 0.0) / count;
+        expected += pressure;
+        moment += s * pressure;
+      }
+      const std::vector<double> force = forces_of(joint, y);
+      double sum = 0.0, turn = 0.0;
+      for (std::size_t i = 0; i < force.size(); ++i) {
+        sum += force[i];
+        turn += division.points[i] * force[i];
+      }
+      EXPECT_NEAR(sum, expected, 1e-8 * full_stiffness);
+      EXPECT_NEAR(turn, moment, 1e-8 * full_stiffness);
+    }
+  }
+}
+
 // F is the slope of a convex potential that is homogeneous: F = H y, and H is its derivative.
 TEST(JointPressure, TangentIsTheDerivativeOfTheForces) {
   const std::vector<std::vector<double>> states{
