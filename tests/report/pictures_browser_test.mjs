@@ -97,6 +97,36 @@ const tests = {
     await close(page);
   },
 
+  async "joints are darker than any block beside them, whatever colours one sees"() {
+    const page = await open("tunnel");
+    await page
+      .locator(".animation .controls label", { hasText: "Joints by" })
+      .locator("select")
+      .selectOption("slip");
+    await settle(page);
+    // L* of CIELAB.
+    const [blocks, joints] = await page.$$eval(
+      ".animation .legend-bar",
+      (bars) =>
+        bars.slice(0, 2).map((bar) =>
+          [
+            ...bar.style.background.matchAll(/rgb\((\d+), (\d+), (\d+)\)/g),
+          ].map((m) => {
+            const [r, g, b] = m.slice(1).map((c) => {
+              const s = Number(c) / 255;
+              return s > 0.04045 ? ((s + 0.055) / 1.055) ** 2.4 : s / 12.92;
+            });
+            const y = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+            return y > 0.008856 ? 116 * Math.cbrt(y) - 16 : 903.3 * y;
+          }),
+        ),
+    );
+    assert.ok(blocks.length > 20 && joints.length > 20);
+    const apart = Math.min(...blocks) - Math.max(...joints);
+    assert.ok(apart > 8, `${apart} of L*`);
+    await close(page);
+  },
+
   async "all frames are recorded as a film"() {
     const page = await open("fallen_stone");
     const film = await saved(page, ".animation", "Film");

@@ -266,7 +266,8 @@ export class SectionView {
 
   private drawBlocks(): void {
     const { run, look, context: c } = this;
-    const colors = this.fields.blockColors(look.blocks, look.moment, this.u, this.since, look.since);
+    const { blocks, moment, since, joints } = look;
+    const colors = this.fields.blockColors(blocks, moment, this.u, this.since, since, joints);
     // Paper shows between blocks that fill pixels in part, which makes patterns of small ones: they cover the seams themselves.
     const withEdges = this.blockPixels() >= smallestWithEdges;
     c.lineWidth = 1;
