@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/file_set.h"
 #include "core/read_file.h"
+#include "core/svg.h"
 #include "job/result_folder.h"
 #include "loading/motion_text.h"
 #include "loading/svg_chart.h"
@@ -106,10 +107,7 @@ double largest_of(const std::vector<double>& values) {
 
 std::string as_svg(const std::string& title, const std::vector<Test>& tests) {
   constexpr double width = 900.0, height = 330.0, edge = 80.0, panel = 230.0;
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
-      "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-      width, height * static_cast<double>(tests.size()));
+  std::string svg = svg_begin(width, height * static_cast<double>(tests.size()), 12);
   double top = 50.0;
   for (const Test& test : tests) {
     loading::ChartFrame frame{edge, top, width - 2.0 * edge, panel, {}, {}};
@@ -121,11 +119,10 @@ std::string as_svg(const std::string& title, const std::vector<Test>& tests) {
                                  "#D55E00", 1.5);
     svg += loading::draw_curve(frame, scaled(test.curve.displacement, millimetre),
                                scaled(test.curve.force, kilonewton), "#222222", 1.5);
-    if (!test.force.empty())
-      svg += loading::draw_text(width - edge, top - 7.0, "end", "measured", "fill=\"#D55E00\"");
+    if (!test.force.empty()) svg += svg_text(width - edge, top - 7.0, "end", "measured", "fill=\"#D55E00\"");
     top += height;
   }
-  return svg + "</svg>\n";
+  return svg.append(svg_end);
 }
 
 /// The largest force, and how far that of the program is from what was measured.

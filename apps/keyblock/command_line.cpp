@@ -53,6 +53,7 @@ void describe(CLI::App& app, int& exit_code) {
       "  keyblock check tunnel.toml\n"
       "  keyblock run tunnel.toml -o out/tunnel\n"
       "  keyblock run tunnel.toml -o out/strong --set \"stage.'first earthquake'.scale=2\"\n"
+      "  keyblock picture out/tunnel --color slip -o slip.pdf\n"
       "  keyblock motion record.smc --plot\n"
       "  keyblock study run tunnel.toml -o out/study --workers 8\n"
       "  keyblock limit tunnel.toml --key joints.friction --from 45 --to 5 -o out/limit\n"
@@ -66,6 +67,8 @@ void describe(CLI::App& app, int& exit_code) {
   add_cut(app);
   add_report(app);
   add_export(app);
+  add_picture(app);
+  add_film(app);
   add_motion(app, exit_code);
   add_verify(app, exit_code);
   add_study(app);

@@ -14,6 +14,8 @@ void add_check(CLI::App& app, int& exit_code);
 void add_cut(CLI::App& app);
 void add_report(CLI::App& app);
 void add_export(CLI::App& app);
+void add_picture(CLI::App& app);
+void add_film(CLI::App& app);
 void add_motion(CLI::App& app, int& exit_code);
 /// A row that does not hold sets `exit_code`, which must outlive the parsing.
 void add_verify(CLI::App& app, int& exit_code);

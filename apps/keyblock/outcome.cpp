@@ -30,8 +30,11 @@ constexpr double largest_overlap = 1e-3;  // m, that is none to speak of
 
 constexpr double least_rotation = 0.01;  // degrees
 
-const Row heading{"stage",     "steps",       "time s",   "PGA m/s2", "fallen",
-                  "fallen m2", "loosened m2", "filled %", "slip mm"};
+// Units stand below, so that the table has room in a terminal.
+const std::array<Row, 2> heading{
+    Row{"stage", "steps", "time", "PGA", "fallen", "fallen", "loosened", "filled", "slip"},
+    Row{"", "", "s", "m/s2", "blocks", "m2", "m2", "%", "mm"}};
+constexpr int terminal_columns = 80, least_name = 8;
 
 Row row(const StageRecord& stage) {
   const record::Damage& d = stage.damage;
@@ -53,11 +56,16 @@ std::string aligned(const std::vector<Row>& rows) {
   for (const Row& r : rows) {
     for (std::size_t c = 0; c < table_columns; ++c) width[c] = std::max(width[c], column_count(r[c]));
   }
+  // Names of stages take what the numbers leave.
+  int room = terminal_columns;
+  for (std::size_t c = 1; c < table_columns; ++c) room -= 2 + width[c];
+  width[0] = std::min(width[0], std::max(least_name, room));
   std::string text;
   for (const Row& r : rows) {
     for (std::size_t c = 0; c < table_columns; ++c) {
-      const std::string padding(static_cast<std::size_t>(width[c] - column_count(r[c])), ' ');
-      text += c == 0 ? r[c] + padding : "  " + padding + r[c];
+      const std::string cell = c == 0 ? one_line(r[c], width[c], true) : r[c];
+      const std::string padding(static_cast<std::size_t>(width[c] - column_count(cell)), ' ');
+      text += c == 0 ? cell + padding : "  " + padding + cell;
     }
     text += '\n';
   }
@@ -239,7 +247,7 @@ std::string most_loaded(const RunRecord& run) {
 
 std::string outcome_text(const RunRecord& run, std::size_t block_count, std::string_view scenario,
                          std::span<const std::string> openings) {
-  std::vector<Row> rows{heading};
+  std::vector<Row> rows(heading.begin(), heading.end());
   for (const StageRecord& stage : run.stages) rows.push_back(row(stage));
   const double per_step = run.steps > 0 ? 1000.0 * run.wall_time / static_cast<double>(run.steps) : 0.0;
   std::string text = fmt::format(

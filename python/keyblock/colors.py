@@ -26,7 +26,9 @@ OUTLINE = "#c2185b"
 COMPRESSION = "#0b3c8c"
 TENSION = "#d55e00"
 FORCE = "#1d1f22"
-ARROW = "#0b3c8c"
+ARROW = "#a0187a"
+THRUST = "#c2185b"
+BEFORE = "#0072b2"
 
 STATUS = [ROCK, "#e69f00", "#d55e00"]
 #: Colour and line width (pt) by contact state: open, sliding, locked.

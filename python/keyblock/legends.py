@@ -107,6 +107,10 @@ def draw_legend(ax: Axes, picture: Picture) -> None:
         entries.append(Line2D([], [], color=colors.FORCE, linewidth=section.FORCE_WIDTH * force / typical, label=label))
     if options.elements and len(picture.frame.elements):
         entries += element_entries(picture)
+    if options.thrust:
+        entries.append(Line2D([], [], color=colors.THRUST, linewidth=1.4, marker="o", markersize=4, label="line of thrust; dots are hinges"))
+    if options.outline:
+        entries.append(Line2D([], [], color=colors.BEFORE, linewidth=0.6, label="as the blocks were"))
     if options.stress:
         entries.append(Line2D([], [], color=colors.COMPRESSION, linewidth=0.8, label="compression"))
         entries.append(Line2D([], [], color=colors.TENSION, linewidth=0.8, label="tension"))

@@ -48,6 +48,8 @@ class Options:
     elements: bool = True  #: springs, supports and other elements: lines, the wider and darker the more of its limit each carries
     forces: bool = False  #: force chains: lines between blocks, as wide as the force
     stress: bool = False  #: crosses of the principal stresses
+    thrust: bool = False  #: the line of thrust of arches and columns, and hinges
+    outline: bool = False  #: the blocks as they were, over those as they are
     arrows: str | None = None  #: "velocity" or "displacement"
     numbers: bool = False  #: names of the blocks, or their numbers
     since: When | int = "reference"  #: displacements count from here: a moment, "start" or "reference" (first excavation)
@@ -158,10 +160,12 @@ class Picture:
         ax, o = self._ax, self.options
         look = section.Look.of(self.run, self.frame, self.since, o.exaggeration, self._points_per_metre())
         self.look = look
-        contacts = self.run.contact_snapshots.near(self.frame) if o.joints in ("state", "slip", "opening") or o.forces else None
+        contacts = self.run.contact_snapshots.near(self.frame) if o.joints in ("state", "slip", "opening") or o.forces or o.thrust else None
         drawn = section.draw_fixed(ax, look)
         drawn += section.draw_blocks(ax, look, self.field, self.norm, faint=o.joints in ("state", "slip", "opening"))
         drawn += self._draw_joints(ax, look, contacts)
+        if o.outline:
+            drawn += section.draw_before(ax, look)
         if o.forces and contacts is not None:
             drawn += section.draw_forces(ax, look, contacts, self.typical("force"))
         if o.elements and len(self.frame.elements):
@@ -170,6 +174,8 @@ class Picture:
             drawn += section.draw_crosses(ax, look, self.typical("stress"))
         if o.arrows:
             drawn.append(section.draw_arrows(ax, look, self._vectors(self.frame), self.typical("arrow")))
+        if o.thrust and contacts is not None:
+            drawn += section.draw_thrust(ax, look, contacts, self.typical("force"))
         if o.numbers:
             drawn += section.draw_numbers(ax, look)
         ax.set_title(self.title(contacts), loc="left")

@@ -257,6 +257,58 @@ def pair_forces(look: Look, contacts: Contacts) -> tuple[np.ndarray, np.ndarray]
     return np.stack([ends[:, 0], middle, ends[:, 1]], axis=1), total
 
 
+def draw_before(ax: Axes, look: Look) -> list[Artist]:
+    """Blocks as they were before anything moved."""
+    from matplotlib.collections import PathCollection
+
+    blocks = look.run.blocks
+    paths = outline_paths(blocks.outlines, blocks.local + blocks.origin, np.flatnonzero(look.shown))
+    drawn = PathCollection(paths, facecolors="none", edgecolors=colors.BEFORE, linewidths=0.4, zorder=3)
+    return [ax.add_collection(drawn, autolim=False)]
+
+
+def eccentricities(contacts: Contacts) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Of all pairs of blocks that press on each other: the pairs, (n, 2); where the resultant of the normal forces goes through the
+    joint, (n, 2); how far that is from the middle of the joint over half its length, ±1 at its ends; and its size, N/m."""
+    pairs, which = np.unique(np.sort(np.column_stack([contacts.block_a, contacts.block_b]), axis=1), axis=0, return_inverse=True)
+    which = which.ravel()
+    force = np.maximum(contacts.normal_force, 0.0)
+    total = np.bincount(which, force, len(pairs))
+    pressed = total > 0.0
+    middle = np.column_stack([np.bincount(which, force * x, len(pairs)) for x in contacts.position.T]) / np.where(pressed, total, 1.0)[:, None]
+    first = np.unique(which, return_index=True)[1]
+    along = np.column_stack([-contacts.normal[first, 1], contacts.normal[first, 0]])
+    place = np.einsum("ij,ij->i", contacts.position, along[which])
+    low, high = np.full(len(pairs), np.inf), np.full(len(pairs), -np.inf)
+    np.minimum.at(low, which, place)
+    np.maximum.at(high, which, place)
+    half = 0.5 * (high - low)
+    off = np.einsum("ij,ij->i", middle, along) - 0.5 * (low + high)
+    found = np.divide(off, half, out=np.zeros(len(pairs)), where=half > 0.0)
+    return pairs[pressed], middle[pressed], found[pressed], total[pressed]
+
+
+#: A joint whose resultant is so far out turns about one of its ends.
+HINGE = 0.9
+
+
+def draw_thrust(ax: Axes, look: Look, contacts: Contacts, typical: float) -> list[Artist]:
+    """The line of thrust, through each block that is pressed by two others, and its hinges."""
+    from matplotlib.collections import LineCollection
+
+    pairs, middle, eccentricity, total = eccentricities(contacts)
+    of_block: dict[int, list[int]] = {}
+    for k, pair in enumerate(pairs.tolist()):
+        for b in pair:
+            of_block.setdefault(b, []).append(k)
+    fixed = look.run.blocks.fixed
+    ends = [k for b, k in of_block.items() if not fixed[b] and len(k) == 2 and total[k].max() >= 0.01 * typical]
+    lines = LineCollection(middle[np.array(ends, dtype=int).reshape(-1, 2)], colors=colors.THRUST, linewidths=1.4, capstyle="round", zorder=7)
+    hinges = middle[(np.abs(eccentricity) > HINGE) & (total >= 0.01 * typical)]
+    dots = ax.scatter(*hinges.T, s=22.0, c=colors.THRUST, edgecolors="white", linewidths=0.6, zorder=7.1)
+    return [ax.add_collection(lines, autolim=False), dots]
+
+
 #: Width of the line of a typical force, pt.
 FORCE_WIDTH = 2.0
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -237,3 +238,26 @@ def test_a_picture_moves_on(tunnel):
     ours, theirs = collections(left, "PathCollection")[1], collections(right, "PathCollection")[1]
     np.testing.assert_array_equal(ours.get_facecolors(), theirs.get_facecolors())
     assert left.get_title(loc="left") == right.get_title(loc="left")
+
+
+def test_the_resultant_lies_where_the_forces_balance():
+    """A joint of 1 m with 3 N at its begin and 1 N at its end; another that is pressed at one end alone: a hinge."""
+    contacts = SimpleNamespace(
+        block_a=np.array([1, 0, 1, 1]),
+        block_b=np.array([0, 1, 2, 2]),
+        position=np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 2.0], [1.0, 2.0]]),
+        normal=np.array([[0.0, 1.0], [0.0, -1.0], [0.0, 1.0], [0.0, 1.0]]),
+        normal_force=np.array([3.0, 1.0, 5.0, 0.0]),
+    )
+    pairs, middle, eccentricity, total = section.eccentricities(contacts)
+    assert pairs.tolist() == [[0, 1], [1, 2]]
+    assert total.tolist() == [4.0, 5.0]
+    assert middle.tolist() == [[0.25, 0.0], [0.0, 2.0]]
+    assert np.abs(eccentricity).tolist() == [0.5, 1.0]
+
+
+def test_the_line_of_thrust_and_the_outline_are_drawn(tunnel):
+    ax = tunnel.plot("in situ", "plain", thrust=True, outline=True)
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert "as the blocks were" in labels
+    assert any(label.startswith("line of thrust") for label in labels)

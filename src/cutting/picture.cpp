@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
@@ -13,6 +12,7 @@
 #include <tuple>
 
 #include "core/index.h"
+#include "core/svg.h"
 #include "core/xml_text.h"
 
 namespace keyblock::cutting {
@@ -22,6 +22,7 @@ namespace {
 constexpr double page_width = 1000.0;
 constexpr double margin = 30.0;
 constexpr double legend_row = 24.0;
+constexpr int font_size = 15;
 constexpr std::string_view rock_fill = "#f5f2ea";
 constexpr std::string_view removed_colour = "#c9c6bf";
 constexpr std::string_view ink = "#222222";
@@ -108,14 +109,8 @@ class Picture {
     joints();
     outlines(excavations);
     const double height = legend();
-    body_ += "</svg>\n";
-    body_.insert(
-        0,
-        fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:.0f}\" width=\"{0:g}\" "
-                    "height=\"{1:.0f}\" font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\" "
-                    "font-size=\"15\">\n"
-                    "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-                    page_width, height));
+    body_ += svg_end;
+    body_.insert(0, svg_begin(page_width, height, font_size));
     return std::move(body_);
   }
 
@@ -126,23 +121,7 @@ class Picture {
   }
 
   void point(char command, Vec2 p) {
-    body_ += command;
-    hundredths(left_ + scale_ * (p.x - box_.min.x));
-    body_ += ' ';
-    hundredths(bottom_ - scale_ * (p.y - box_.min.y));
-  }
-
-  /// As "{:.2f}" would: a picture of many blocks is nothing but millions of these.
-  void hundredths(double x) {
-    const long long all = std::llround(100.0 * std::abs(x));
-    std::array<char, 32> text;
-    char* end = text.data();
-    if (x < 0.0 && all > 0) *end++ = '-';
-    end = std::to_chars(end, text.data() + text.size(), all / 100).ptr;
-    *end++ = '.';
-    *end++ = static_cast<char>('0' + all / 10 % 10);
-    *end++ = static_cast<char>('0' + all % 10);
-    body_.append(text.data(), end);
+    svg_point(body_, command, left_ + scale_ * (p.x - box_.min.x), bottom_ - scale_ * (p.y - box_.min.y));
   }
 
   void ring_path(const Ring& ring, Vec2 shift) {

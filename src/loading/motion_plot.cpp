@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/svg.h"
 #include "core/text.h"
 #include "loading/motion_measures.h"
 #include "loading/motion_series.h"
@@ -19,6 +20,7 @@ constexpr double left_edge = 78.0, left_width = 720.0, right_edge = 880.0, right
 constexpr double title_height = 66.0, panel_height = 146.0, panel_gap = 30.0;
 constexpr double spectrum_height = 258.0, build_up_height = 178.0;
 
+constexpr int font_size = 12;
 constexpr double spectrum_damping = 0.05, shortest_period = 0.02, longest_period = 10.0;
 constexpr int spectrum_periods = 120;
 
@@ -104,10 +106,10 @@ std::string mark_peak(const ChartFrame& frame, const MotionComponent& c, double 
              "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"none\" stroke=\"#c0392b\" "
              "stroke-width=\"1.5\"/>\n",
              scaled.at_x(c.time(at)), scaled.at_y(c.acceleration[at])) +
-         draw_text(frame.left + frame.width, frame.top - 7.0, "end",
-                   fmt::format("{:.3g} m/s² = {:.3g} g at {:.2f} s", c.acceleration[at],
-                               c.acceleration[at] / standard_gravity, c.time(at)),
-                   "fill=\"#c0392b\"");
+         svg_text(frame.left + frame.width, frame.top - 7.0, "end",
+                  fmt::format("{:.3g} m/s² = {:.3g} g at {:.2f} s", c.acceleration[at],
+                              c.acceleration[at] / standard_gravity, c.time(at)),
+                  "fill=\"#c0392b\"");
 }
 
 std::string time_panels(const MotionComponent& c, const AllSeries& all, double top) {
@@ -118,13 +120,12 @@ std::string time_panels(const MotionComponent& c, const AllSeries& all, double t
   frame.top += panel_height + panel_gap;
   const Curves velocities = curves_of(all, &MotionSeries::velocity);
   svg += time_panel(frame, "velocity, m/s", all, velocities, false);
-  svg += draw_text(frame.left + frame.width, frame.top - 7.0, "end", end_values(velocities, "m/s"));
+  svg += svg_text(frame.left + frame.width, frame.top - 7.0, "end", end_values(velocities, "m/s"));
   frame.top += panel_height + panel_gap;
   const Curves displacements = curves_of(all, &MotionSeries::displacement);
   svg += time_panel(frame, "displacement, m", all, displacements, true);
-  svg += draw_text(frame.left + frame.width, frame.top - 7.0, "end", end_values(displacements, "m"));
-  return svg +
-         draw_text(frame.left + frame.width / 2.0, frame.top + panel_height + 32.0, "middle", "time, s");
+  svg += svg_text(frame.left + frame.width, frame.top - 7.0, "end", end_values(displacements, "m"));
+  return svg + svg_text(frame.left + frame.width / 2.0, frame.top + panel_height + 32.0, "middle", "time, s");
 }
 
 std::string spectrum_panel(const AllSeries& all, double top) {
@@ -148,7 +149,7 @@ std::string spectrum_panel(const AllSeries& all, double top) {
   for (std::size_t w = 0; w < ways.size(); ++w)
     svg += draw_curve(frame, periods, spectra[w], ways[w].color, ways[w].width + 0.3);
   return svg +
-         draw_text(frame.left + frame.width / 2.0, frame.top + frame.height + 32.0, "middle", "period, s");
+         svg_text(frame.left + frame.width / 2.0, frame.top + frame.height + 32.0, "middle", "period, s");
 }
 
 std::string build_up_panel(const MotionComponent& c, const AllSeries& all, double top) {
@@ -163,37 +164,37 @@ std::string build_up_panel(const MotionComponent& c, const AllSeries& all, doubl
     svg += draw_curve(frame, all[w].time, arias[w], ways[w].color, ways[w].width + 0.3);
   const MotionMeasures m = measure(c);
   svg +=
-      draw_text(frame.left + frame.width, frame.top - 7.0, "end",
-                fmt::format("{:.3g} m/s, 5 to 95 % in {:.3g} s", m.arias_intensity, m.significant_duration));
-  return svg + draw_text(frame.left + frame.width / 2.0, bottom + 32.0, "middle", "time, s");
+      svg_text(frame.left + frame.width, frame.top - 7.0, "end",
+               fmt::format("{:.3g} m/s, 5 to 95 % in {:.3g} s", m.arias_intensity, m.significant_duration));
+  return svg + svg_text(frame.left + frame.width / 2.0, bottom + 32.0, "middle", "time, s");
 }
 
 std::string draw_sheet(const MotionComponent& c, double top) {
   const MotionMeasures m = measure(c);
   std::string svg =
-      draw_text(left_edge, top + 16.0, "start", sheet_title(c), "font-weight=\"bold\" font-size=\"15\"");
+      svg_text(left_edge, top + 16.0, "start", sheet_title(c), "font-weight=\"bold\" font-size=\"15\"");
   const std::string jumps = jumps_text(end_jumps(c));
-  svg += draw_text(
+  svg += svg_text(
       left_edge, top + 37.0, "start",
       fmt::format("{}; {} samples{}; PGA {:.3g} g, PGV {:.3g} m/s, Arias intensity {:.3g} m/s", c.format,
                   c.acceleration.size(), c.times.empty() ? fmt::format(", dt {:.6g} s", c.dt) : "",
                   std::abs(m.peak) / standard_gravity, m.peak_velocity, m.arias_intensity));
   if (!jumps.empty())
-    svg += draw_text(right_edge + right_width, top + 16.0, "end", "It " + jumps + ".", "fill=\"#c0392b\"");
+    svg += svg_text(right_edge + right_width, top + 16.0, "end", "It " + jumps + ".", "fill=\"#c0392b\"");
   if (!(c.end() > c.time(0)) || !std::isfinite(c.end()))
-    return svg + draw_text(left_edge, top + title_height, "start", "Nothing can be drawn over time, s");
+    return svg + svg_text(left_edge, top + title_height, "start", "Nothing can be drawn over time, s");
   AllSeries all;
   for (std::size_t w = 0; w < ways.size(); ++w) all[w] = motion_series(c, ways[w].baseline);
   return svg + time_panels(c, all, top) + spectrum_panel(all, top) + build_up_panel(c, all, top);
 }
 
 std::string draw_legend() {
-  std::string svg = draw_text(left_edge, 22.0, "start", "baseline:", "fill=\"#333\"");
+  std::string svg = svg_text(left_edge, 22.0, "start", "baseline:", "fill=\"#333\"");
   double x = left_edge + 70.0;
   for (std::size_t w = ways.size(); w-- > 0;) {
     svg += fmt::format("<path d=\"M{:.1f},18H{:.1f}\" stroke=\"{}\" stroke-width=\"2.5\"/>\n", x, x + 26.0,
                        ways[w].color);
-    svg += draw_text(x + 33.0, 22.0, "start", ways[w].name);
+    svg += svg_text(x + 33.0, 22.0, "start", ways[w].name);
     x += w == recorded ? 180.0 : 110.0;
   }
   return svg;
@@ -203,17 +204,14 @@ std::string draw_legend() {
 
 std::string plot_motion_svg(const std::vector<MotionComponent>& components) {
   const double height = legend_height + sheet_height * static_cast<double>(components.size());
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
-      "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-      page_width, height);
+  std::string svg = svg_begin(page_width, height, font_size);
   svg += draw_legend();
   double top = legend_height;
   for (const MotionComponent& component : components) {
     svg += draw_sheet(component, top);
     top += sheet_height;
   }
-  return svg + "</svg>\n";
+  return svg.append(svg_end);
 }
 
 }  // namespace keyblock::loading

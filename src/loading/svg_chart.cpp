@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "core/xml_text.h"
+#include "core/svg.h"
 
 namespace keyblock::loading {
 namespace {
@@ -59,25 +59,19 @@ std::vector<double> chart_ticks(const ChartAxis& axis, int most) {
   return places;
 }
 
-std::string draw_text(double x, double y, std::string_view anchor, std::string_view text,
-                      std::string_view more) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}{}>{}</text>\n", x, y, anchor,
-                     more.empty() ? "" : " ", more, xml_text(text));
-}
-
 std::string draw_frame(const ChartFrame& frame, std::string_view title, bool numbers) {
   constexpr double pixels_per_x = 80.0, pixels_per_y = 24.0;
   const double right = frame.left + frame.width, bottom = frame.top + frame.height;
-  std::string svg = draw_text(frame.left, frame.top - 7.0, "start", title, "fill=\"#333\"");
+  std::string svg = svg_text(frame.left, frame.top - 7.0, "start", title, "fill=\"#333\"");
   for (const double x : chart_ticks(frame.x, static_cast<int>(frame.width / pixels_per_x))) {
     svg += fmt::format("<path d=\"M{:.1f},{:.1f}V{:.1f}\" stroke=\"#ddd\"/>\n", frame.at_x(x), frame.top,
                        bottom);
-    if (numbers) svg += draw_text(frame.at_x(x), bottom + 16.0, "middle", fmt::format("{:.6g}", x));
+    if (numbers) svg += svg_text(frame.at_x(x), bottom + 16.0, "middle", fmt::format("{:.6g}", x));
   }
   for (const double y : chart_ticks(frame.y, static_cast<int>(frame.height / pixels_per_y))) {
     svg += fmt::format("<path d=\"M{:.1f},{:.1f}H{:.1f}\" stroke=\"{}\"/>\n", frame.left, frame.at_y(y),
                        right, y == 0.0 ? "#999" : "#ddd");
-    svg += draw_text(frame.left - 6.0, frame.at_y(y) + 4.0, "end", fmt::format("{:.6g}", y));
+    svg += svg_text(frame.left - 6.0, frame.at_y(y) + 4.0, "end", fmt::format("{:.6g}", y));
   }
   return svg + fmt::format(
                    "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" "

@@ -32,8 +32,4 @@ std::string draw_frame(const ChartFrame& frame, std::string_view title, bool num
 std::string draw_curve(const ChartFrame& frame, const std::vector<double>& x, const std::vector<double>& y,
                        std::string_view color, double width);
 
-/// Text that begins, ends or has its middle ("start", "end", "middle") at a point. It is escaped; `more` are further attributes.
-std::string draw_text(double x, double y, std::string_view anchor, std::string_view text,
-                      std::string_view more = {});
-
 }  // namespace keyblock::loading

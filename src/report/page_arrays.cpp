@@ -2,6 +2,8 @@
 #include <cmath>
 #include <string>
 
+#include "picture/force_chains.h"
+#include "picture/marks.h"
 #include "record/record_fields.h"
 #include "report/frame_codec.h"
 #include "report/page_data.h"
@@ -94,6 +96,14 @@ void add_frames(const results::RunData& run, const std::vector<std::size_t>& cho
            encode_frames(chosen.size(), 3 * blocks, stress_quantum(run), [&](std::size_t f, std::size_t i) {
              return double{run.frames[chosen[f]].stress[i % blocks][i / blocks]};
            }));
+  const bool knows_velocities =
+      std::ranges::all_of(chosen, [&](std::size_t f) { return run.frames[f].velocity.size() == blocks; });
+  if (!knows_velocities || chosen.empty()) return;
+  const double quantum = velocity_quantum(run);
+  pack.add("frame.velocity",
+           encode_frames(chosen.size(), 2 * blocks, quantum, [&](std::size_t f, std::size_t i) {
+             return double{run.frames[chosen[f]].velocity[i % blocks][i / blocks]};
+           }));
 }
 
 void add_elements(const results::RunData& run, const std::vector<std::size_t>& chosen, ArrayPack& pack) {
@@ -123,11 +133,38 @@ void add_elements(const results::RunData& run, const std::vector<std::size_t>& c
   pack.add("element.present", present);
 }
 
+/// What blocks press on each other with, snapshot by snapshot.
+class PackedChains {
+ public:
+  void add(const ContactFrame& contacts) {
+    for (const picture::ForceChain& chain : picture::force_chains(contacts)) {
+      for (const int b : {chain.block_a, chain.block_b}) block_.push_back(static_cast<std::uint32_t>(b));
+      for (const double x : {chain.middle.x, chain.middle.y}) middle_.push_back(static_cast<float>(x));
+      force_.push_back(static_cast<float>(chain.force));
+      hinge_.push_back(chain.is_hinge() ? 1 : 0);
+    }
+    begin_.push_back(static_cast<std::uint32_t>(force_.size()));
+  }
+  void pack(ArrayPack& pack) const {
+    pack.add("chain.begin", begin_);
+    pack.add("chain.block", block_);
+    pack.add("chain.middle", middle_);
+    pack.add("chain.force", force_);
+    pack.add("chain.hinge", hinge_);
+  }
+
+ private:
+  std::vector<std::uint32_t> begin_{0}, block_;
+  std::vector<float> middle_, force_;
+  std::vector<std::uint8_t> hinge_;
+};
+
 void add_contacts(const results::RunData& run, const std::vector<std::size_t>& frames, ArrayPack& pack) {
   std::vector<int> stages;
   for (const ContactFrame& snapshot : run.contacts) stages.push_back(snapshot.stage);
   const results::JointLocator locator(run.model);
   std::vector<results::JointPiece> pieces;
+  PackedChains chains;
   std::vector<std::uint32_t> frame_index, begin{0};
   for (const std::size_t k : thin_by_stage(stages, max_snapshots)) {
     if (run.frames.empty()) break;
@@ -136,6 +173,7 @@ void add_contacts(const results::RunData& run, const std::vector<std::size_t>& f
     const auto at = std::lower_bound(frames.begin(), frames.end(), frame);
     frame_index.push_back(static_cast<std::uint32_t>(at - frames.begin()));
     begin.push_back(static_cast<std::uint32_t>(pieces.size()));
+    chains.add(run.contacts[k]);
   }
   std::vector<std::uint32_t> vertex;
   std::vector<std::uint8_t> from, to, state;
@@ -153,6 +191,7 @@ void add_contacts(const results::RunData& run, const std::vector<std::size_t>& f
   }
   pack.add("snapshot.frame", frame_index);
   pack.add("snapshot.begin", begin);
+  chains.pack(pack);
   pack.add("piece.vertex", vertex);
   pack.add("piece.from", from);
   pack.add("piece.to", to);
@@ -248,6 +287,17 @@ void add_motions(const results::RunData& run, ArrayPack& pack) {
   }
 }
 
+// A thousandth of the median of what is not zero.
+double share_of_typical(std::vector<float>& sizes) {
+  constexpr double share_of_median = 1e-3;
+  std::erase_if(sizes, [](float size) { return !std::isfinite(size) || size == 0.0F; });
+  if (sizes.empty()) return 1.0;
+  for (float& size : sizes) size = std::abs(size);
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return share_of_median * double{*middle};
+}
+
 }  // namespace
 
 double displacement_quantum(const results::RunData& run) {
@@ -266,16 +316,15 @@ double displacement_quantum(const results::RunData& run) {
 }
 
 double stress_quantum(const results::RunData& run) {
-  constexpr double share_of_median = 1e-3;
   std::vector<float> sizes;
   for (const Frame& frame : run.frames)
-    for (const auto& s : frame.stress)
-      for (const float c : s)
-        if (std::isfinite(c) && c != 0.0F) sizes.push_back(std::abs(c));
-  if (sizes.empty()) return 1.0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return share_of_median * double{*middle};
+    for (const auto& s : frame.stress) sizes.insert(sizes.end(), s.begin(), s.end());
+  return share_of_typical(sizes);
+}
+
+double velocity_quantum(const results::RunData& run) {
+  constexpr double share_of_arrow = 1e-2;
+  return share_of_arrow * picture::typical_sizes(run).velocity;
 }
 
 ArrayPack page_arrays(const results::RunData& run) {

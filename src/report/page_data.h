@@ -35,6 +35,12 @@ PageData make_page_data(const results::RunData& run);
 /// | piece.from, piece.to | u8 | n(pieces) | shares in 1/255 |
 /// | piece.state | u8 | n(pieces) | ContactState |
 /// | piece.slip, piece.gap | f32 | n(pieces) | m |
+/// | frame.velocity | u8 | codec | columns: x of all blocks, then y; velocity_quantum; not in files without velocities |
+/// | chain.begin | u32 | n(snapshots) + 1 | force chains of a snapshot: picture::ForceChain |
+/// | chain.block | u32 | 2 n(chains) | the two blocks |
+/// | chain.middle | f32 | 2 n(chains) | x, y of the resultant, m |
+/// | chain.force | f32 | n(chains) | N per thickness |
+/// | chain.hinge | u8 | n(chains) | whether the resultant is at an end of the joint |
 /// | history.time | f64 | rows | s |
 /// | element.reference | f32 | 4 n(elements) | ends before the run, x and y of both, m; not in runs without elements, as all of these |
 /// | element.ends | f32 | 4 n(elements) n(frames) | m |
@@ -52,6 +58,9 @@ double displacement_quantum(const results::RunData& run);
 
 /// Resolution of the stresses in the page, Pa: a thousandth of their typical (median) size.
 double stress_quantum(const results::RunData& run);
+
+/// Resolution of the velocities in the page, m/s: a hundredth of that of a typical arrow, which no eye can tell.
+double velocity_quantum(const results::RunData& run);
 
 /// Facts as JSON: see interface Header in viewer/src/data.ts, field by field.
 std::string page_header(const results::RunData& run, const ArrayPack& arrays);

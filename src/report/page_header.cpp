@@ -4,6 +4,7 @@
 
 #include "core/checked_json.h"
 #include "cutting/cut_fields.h"
+#include "picture/marks.h"
 #include "record/computation_errors.h"
 #include "record/fallen.h"
 #include "report/page_data.h"
@@ -45,6 +46,20 @@ std::string pressure_search(const results::RunData& data) {
       return record::pressure_search("SCENARIO.toml", data.model.excavation_names, stage->damage);
   }
   return {};
+}
+
+/// What may be drawn over the blocks, with the size that Mark::drawn is of.
+ordered_json marks_json(const results::RunData& data) {
+  const picture::Typical typical = picture::typical_sizes(data);
+  ordered_json marks = ordered_json::array();
+  for (const picture::Mark& mark : picture::all_marks())
+    marks.push_back({{"name", mark.name},
+                     {"text", mark.text},
+                     {"meaning", mark.meaning},
+                     {"drawn", mark.drawn},
+                     {"typical", typical.of(mark.name)},
+                     {"color", mark.color}});
+  return {{"longest_arrow", picture::longest_arrow}, {"all", marks}};
 }
 
 ordered_json model_json(const results::RunData& data) {
@@ -120,6 +135,8 @@ std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
                             {"recorded_frames", run.frames.size()},
                             {"displacement_quantum", displacement_quantum(run)},
                             {"stress_quantum", stress_quantum(run)},
+                            {"velocity_quantum", velocity_quantum(run)},
+                            {"marks", marks_json(run)},
                             {"steps_between_rows", steps_between_rows(run.steps)},
                             // In the order of the values in add_steps, page_arrays.cpp.
                             {"step_columns",

@@ -6,10 +6,18 @@ import { fixed, length, significant, stress } from "./format";
 import { damageStart, momentLabel, sinceChoices } from "./labels";
 import { legendElement } from "./legend";
 import { Run, Status, statusNames } from "./run";
+import { saveButtons } from "./save/figure";
+import { filmButton } from "./save/film";
+import { sectionFigure } from "./save/section_figure";
 import { SectionView } from "./section_view";
 
 const speeds = [0.25, 0.5, 1, 2, 4, 8];
 const exaggerations = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+
+/** Heights of the picture, px. */
+const leastHeight = 260;
+const largeEnough = 340;
+const mostHeight = 860;
 
 /** The animation: canvas, time slider, controls, legend and the block under the pointer. */
 export class Animation {
@@ -34,8 +42,20 @@ export class Animation {
     this.view = new SectionView(
       run,
       fields,
-      { moment: clock.moment, since, exaggeration: 1, blocks: "displacement", joints: "plain" },
-      { axes: true, label: "Block system at the moment of the animation", minHeight: 260, maxHeight: 860 },
+      {
+        moment: clock.moment,
+        since,
+        exaggeration: 1,
+        blocks: "displacement",
+        joints: "plain",
+        marks: "none",
+      },
+      {
+        axes: true,
+        label: "Block system at the moment of the animation",
+        minHeight: leastHeight,
+        maxHeight: mostHeight,
+      },
     );
     this.slider = h("input", {
       type: "range",
@@ -73,7 +93,12 @@ export class Animation {
         h("div", { class: "track" }, this.slider, this.stageBand()),
         this.speedChoice(),
       ),
-      h("div", { class: "time-line" }, this.timeLabel),
+      h(
+        "div",
+        { class: "time-line" },
+        this.timeLabel,
+        saveButtons(() => sectionFigure(this.view), filmButton(this.view, clock)),
+      ),
       h(
         "p",
         { class: "hint screen-only" },
@@ -83,6 +108,7 @@ export class Animation {
     this.listen();
     this.updateLegends();
     new ResizeObserver(() => this.resize()).observe(this.figure);
+    addEventListener("resize", () => this.resize());
     clock.onChange(() => this.refresh());
     this.refresh();
   }
@@ -101,6 +127,7 @@ export class Animation {
       choice("Joints by", jointFields(this.run), look.joints, (v) =>
         change(() => (look.joints = v as JointField)),
       ),
+      choice("Over them", this.fields.marks.choices(), look.marks, (v) => change(() => (look.marks = v))),
       choice("Displacement since", sinceChoices(this.run), String(look.since), (v) =>
         change(() => (look.since = Number(v))),
       ),
@@ -133,22 +160,12 @@ export class Animation {
       button("+", "Zoom in", zoom(1.5)),
       button("−", "Zoom out", zoom(1 / 1.5)),
       button("⤢", "Fit the picture", () => this.fit()),
-      button("↓", "Save the picture as PNG", () => this.save()),
     );
   }
 
   private fit(): void {
     this.view.fit();
     this.requestDraw();
-  }
-
-  private save(): void {
-    this.view.canvas.toBlob((blob) => {
-      if (!blob) return;
-      const link = h("a", { href: URL.createObjectURL(blob), download: "blocks.png" });
-      link.click();
-      setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-    });
   }
 
   /** The stages under the slider, each as wide as its frames where that is wide enough for a click. */
@@ -237,21 +254,31 @@ export class Animation {
   }
 
   private updateLegends(): void {
-    const { look } = this.view;
-    const legends = [
-      this.fields.blockLegend(look.blocks, look.since),
-      this.fields.jointLegend(look.joints),
-      this.fields.elements.legend(),
-    ];
-    this.legends.replaceChildren(...legends.filter((l) => l !== null).map(legendElement));
+    this.legends.replaceChildren(...this.fields.legends(this.view.look).map(legendElement));
   }
 
   private resize(): void {
     const width = this.figure.clientWidth;
     if (width > 0) {
+      this.view.options.maxHeight = this.roomForPicture();
       this.view.resize(width);
       this.view.draw();
     }
+  }
+
+  /** With slider and Play the picture fits in a window; with controls and legends too, where it stays large enough. */
+  private roomForPicture(): number {
+    const below = 120;
+    const above = this.figure.offsetTop - this.element.offsetTop + 70;
+    const beside = window.innerHeight - below;
+    const room = beside - above >= largeEnough ? beside - above : beside;
+    return Math.min(mostHeight, Math.max(leastHeight, room));
+  }
+
+  /** For the keyboard, from the top of the page. */
+  focusPlay(): void {
+    this.element.scrollIntoView({ block: "start" });
+    this.playButton.focus({ preventScroll: true });
   }
 
   private requestDraw(): void {

@@ -39,6 +39,17 @@ export const palette = [
   "#B8A900",
 ];
 
+/** A colour "rgb(r,g,b)" mixed with another, of which it keeps so large a share. */
+export function mixed(color: string, with_: Rgb, share: number): string {
+  const parts = /rgb\((\d+),(\d+),(\d+)\)/.exec(color);
+  if (!parts) return color;
+  return `rgb(${with_.map((c, k) => Math.round(share * Number(parts[k + 1]) + (1 - share) * c)).join(",")})`;
+}
+
+export function rgbOf(hex: string): Rgb {
+  return parse(hex.slice(1));
+}
+
 export interface Scale {
   min: number;
   max: number;

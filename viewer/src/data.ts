@@ -189,6 +189,9 @@ export interface Header {
   };
   recorded_frames: number;
   displacement_quantum: number;
+  /** Pages of earlier versions do not have it, nor marks. */
+  velocity_quantum?: number;
+  marks?: { longest_arrow: number; all: MarkInHeader[] };
   stress_quantum: number;
   step_columns: string[];
   damage_measures: DamageMeasure[];
@@ -233,6 +236,17 @@ export interface ElementAtEnd {
   utilization: number | null;
   has_yielded: boolean;
   has_ruptured: boolean;
+}
+
+/** What may be drawn over the blocks, described in src/picture/marks.h. */
+export interface MarkInHeader {
+  name: string;
+  text: string;
+  meaning: string;
+  /** Of the typical size: width in units of a picture, or length in sides of a mean block. */
+  drawn: number;
+  typical: number;
+  color: string;
 }
 
 /** Where an array lies in the unpacked bytes. */

@@ -1,6 +1,7 @@
-import { magma, mako, palette, place, table, viridis, type Rgb, type Scale } from "./colors";
+import { magma, mako, mixed, palette, place, rgbOf, table, viridis, type Rgb, type Scale } from "./colors";
 import { css } from "./dom";
 import { Elements } from "./elements";
+import { Marks } from "./marks";
 import { length, niceAbove, stress } from "./format";
 import { EdgeKind, Run, Status, statusNames, type Moment } from "./run";
 
@@ -147,9 +148,11 @@ export class Fields {
   private stateStyles: { name: string; color: string; width: number }[] = [];
   private plain = "";
   readonly elements: Elements;
+  readonly marks: Marks;
 
   constructor(readonly run: Run) {
     this.elements = new Elements(run);
+    this.marks = new Marks(run);
     this.readTheme();
   }
 
@@ -167,7 +170,8 @@ export class Fields {
     const towardsInk = (map: Rgb[]) => table(dark ? map : [...map].reverse());
     this.displacementColors = towardsInk(magma);
     this.stressColors = towardsInk(mako);
-    this.jointColors = towardsInk(dark ? viridis.slice(2) : viridis.slice(0, 9));
+    // Joints have the dark half of the lightness, and blocks beside them the light half: that is seen without colours, too.
+    this.jointColors = towardsInk(dark ? viridis.slice(6) : viridis.slice(0, 5));
   }
 
   /** Moments whose values set the scales: the ends of the stages. */
@@ -262,10 +266,24 @@ export class Fields {
     u: Float32Array,
     since: Float32Array,
     sinceMoment: Moment,
+    joints: JointField,
   ): string[] {
     const { run } = this;
     const color = this.colorOf(field, moment, u, since, sinceMoment);
-    return Array.from({ length: run.blockCount }, (_, b) => (run.fixed[b] ? this.plain : color(b)));
+    const faded = this.fading(joints);
+    return Array.from({ length: run.blockCount }, (_, b) => (run.fixed[b] ? this.plain : faded(color(b))));
+  }
+
+  /** What becomes of the colours of blocks beside joints that have colours of a scale: they are paler than all of those. */
+  private fading(joints: JointField): (color: string) => string {
+    if (!isNumber(joints)) return (color) => color;
+    const paper = rgbOf(css("--paper"));
+    const known = new Map<string, string>();
+    return (color) => {
+      const pale = known.get(color) ?? mixed(color, paper, 0.45);
+      known.set(color, pale);
+      return pale;
+    };
   }
 
   private colorOf(
@@ -310,6 +328,8 @@ export class Fields {
   /** Colour and width (px) of a joint piece; null: not drawn. */
   pieceStyle(field: JointField, piece: number): { color: string; width: number } | null {
     const { run } = this;
+    // The edge of the domain is no joint: a frame without friction would seem to slide all round.
+    if (run.edgeKind[run.pieceVertex[piece]] === EdgeKind.domain) return null;
     if (isNumber(field)) {
       const scale = this.pieceScale(field);
       const value = this.piecesBy(field)[piece];
@@ -372,6 +392,18 @@ export class Fields {
           },
         };
     }
+  }
+
+  /** All legends of what is shown. */
+  legends(look: { blocks: BlockField; joints: JointField; marks: string; since: Moment }): Legend[] {
+    const blocks = this.blockLegend(look.blocks, look.since);
+    if (blocks?.bar) blocks.bar.colors = blocks.bar.colors.map(this.fading(look.joints));
+    return [
+      blocks,
+      this.jointLegend(look.joints),
+      this.elements.legend(),
+      this.marks.legend(look.marks),
+    ].filter((l) => l !== null);
   }
 
   jointLegend(field: JointField): Legend | null {

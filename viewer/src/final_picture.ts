@@ -3,6 +3,8 @@ import type { BlockField, Fields } from "./fields";
 import { quoted } from "./format";
 import { damageStart } from "./labels";
 import { legendElement } from "./legend";
+import { saveButtons } from "./save/figure";
+import { sectionFigure } from "./save/section_figure";
 import { SectionView } from "./section_view";
 import { Status, type Run } from "./run";
 
@@ -26,7 +28,7 @@ export class FinalPicture {
     this.view = new SectionView(
       run,
       fields,
-      { moment, since, exaggeration: 1, blocks, joints: "plain" },
+      { moment, since, exaggeration: 1, blocks, joints: "plain", marks: "none" },
       { axes: true, label: `Block system at the end: ${title}`, maxHeight: mostHeight },
     );
     const legends = [fields.blockLegend(blocks, since), fields.elements.legend()].filter((l) => l !== null);
@@ -34,7 +36,13 @@ export class FinalPicture {
       "figure",
       { class: "final" },
       this.view.canvas,
-      h("figcaption", {}, h("strong", {}, title), ...legends.map(legendElement)),
+      h(
+        "figcaption",
+        {},
+        h("strong", {}, title),
+        ...legends.map(legendElement),
+        saveButtons(() => sectionFigure(this.view)),
+      ),
     );
     new ResizeObserver(() => this.redraw()).observe(this.element);
     addEventListener("resize", () => this.redraw());

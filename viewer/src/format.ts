@@ -75,6 +75,11 @@ export function stress(pa: Number_, digits = 3): string {
   return `${significant(pa / 1e6, digits)} MPa`;
 }
 
+/** A speed in mm/s or m/s. */
+export function speed(v: Number_, digits = 3): string {
+  return `${length(v, digits)}/s`;
+}
+
 export function duration(s: Number_): string {
   if (!present(s)) return missing;
   if (s < 120) return `${significant(s, 3)} s`;
@@ -98,6 +103,12 @@ export const quoted = (name: string) => `“${name}”`;
 export function list(items: readonly string[]): string {
   if (items.length < 2) return items.join("");
   return `${items.slice(0, -1).join(", ")} and ${items[items.length - 1]}`;
+}
+
+/** Of 1, 2, 5 times a power of ten: the largest that is not above x > 0. */
+export function niceBelow(x: number): number {
+  const power = 10 ** Math.floor(Math.log10(x) + 1e-9);
+  return [5, 2].map((m) => m * power).find((v) => v <= x * (1 + 1e-9)) ?? power;
 }
 
 /** Of the numbers 1, 2, 5 times a power of ten: the smallest that is not below x. */

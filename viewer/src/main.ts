@@ -94,6 +94,9 @@ function build(run: Run, main: HTMLElement): void {
     animation?.showBlock(block);
   };
   const parts: Child[] = [
+    animation
+      ? h("button", { type: "button", class: "skip", click: () => animation.focusPlay() }, "To the animation")
+      : null,
     head(header),
     resultSection(run, final?.element ?? null, movingTable(run, showBlock)),
   ];

@@ -4,6 +4,8 @@ import { count, fixed } from "./format";
 import { damageStart, sinceChoices, stageTime } from "./labels";
 import { legendElement } from "./legend";
 import type { Moment, Run } from "./run";
+import { saveButtons } from "./save/figure";
+import { sectionFigure } from "./save/section_figure";
 import { SectionView, type Look } from "./section_view";
 
 interface Picture {
@@ -33,6 +35,7 @@ export class Pictures {
       exaggeration: 1,
       blocks: "displacement",
       joints: "plain",
+      marks: "none",
     };
     this.dialog = h("dialog", {
       class: "large-picture",
@@ -86,6 +89,7 @@ export class Pictures {
       choice("Joints by", jointFields(this.run), look.joints, (v) =>
         change(() => (look.joints = v as JointField)),
       ),
+      choice("Over them", this.fields.marks.choices(), look.marks, (v) => change(() => (look.marks = v))),
       choice("Displacement since", sinceChoices(this.run), String(look.since), (v) =>
         change(() => (look.since = Number(v))),
       ),
@@ -113,20 +117,27 @@ export class Pictures {
       "figure",
       {},
       button,
-      h("figcaption", {}, h("strong", {}, picture.title), h("span", {}, picture.text)),
+      h(
+        "figcaption",
+        {},
+        h("strong", {}, picture.title),
+        h("span", {}, picture.text),
+        saveButtons(() => sectionFigure(this.ownView(picture))),
+      ),
     );
   }
 
+  /** Of one picture, as large as there is room. */
+  private ownView(picture: Picture): SectionView {
+    const look = { ...this.look, moment: picture.moment };
+    return new SectionView(this.run, this.fields, look, {
+      axes: true,
+      label: `Block system: ${picture.title}`,
+    });
+  }
+
   private enlarge(picture: Picture): void {
-    const view = new SectionView(
-      this.run,
-      this.fields,
-      { ...this.look, moment: picture.moment },
-      {
-        axes: true,
-        label: `Block system: ${picture.title}`,
-      },
-    );
+    const view = this.ownView(picture);
     this.large = view;
     const close = h("button", { type: "button", class: "close", click: () => this.dialog.close() }, "Close");
     this.dialog.replaceChildren(
@@ -152,14 +163,7 @@ export class Pictures {
   }
 
   private legendElements(): HTMLElement[] {
-    const { look } = this;
-    return [
-      this.fields.blockLegend(look.blocks, look.since),
-      this.fields.jointLegend(look.joints),
-      this.fields.elements.legend(),
-    ]
-      .filter((l) => l !== null)
-      .map(legendElement);
+    return this.fields.legends(this.look).map(legendElement);
   }
 
   private updateLegends(): void {

@@ -2,6 +2,8 @@ import uPlot from "uplot";
 import type { Clock } from "./clock";
 import { css, h, symbols } from "./dom";
 import { powerOfTen, significant } from "./format";
+import { saveButtons } from "./save/figure";
+import { plotFigure } from "./save/plot_figure";
 
 export interface Series {
   name: string;
@@ -94,7 +96,10 @@ export class Plot {
       h("strong", {}, options.title),
       h("span", { class: "unit" }, symbols(options.unit)),
     );
-    caption.append(this.key());
+    caption.append(
+      this.key(),
+      saveButtons(() => plotFigure(options, document.title)),
+    );
     this.element = h(
       "figure",
       { class: options.wide ? "plot wide" : "plot", "aria-label": `${options.title} (${options.unit})` },
@@ -218,6 +223,8 @@ export class Plot {
       [options.x, ...options.series.map((s) => s.values)] as uPlot.AlignedData,
       this.target,
     );
+    plot.ctx.canvas.setAttribute("role", "img");
+    plot.ctx.canvas.setAttribute("aria-label", `${options.title} over ${options.xName}`);
     plot.over.append(this.marker);
     let pressedAt = 0;
     let before = clock.moment;

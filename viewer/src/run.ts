@@ -20,6 +20,9 @@ export const enum EdgeKind {
 /** Moments at which the page shows the blocks: a fractional index into the frames, −1 for the reference position. */
 export type Moment = number;
 
+/** How much larger the picture may be than the rock, for blocks that have moved. */
+const mostGrowth = 2;
+
 /** The results of one run, with the questions that the figures ask. */
 export class Run {
   readonly stages: Stage[];
@@ -52,6 +55,15 @@ export class Run {
   readonly pieceState: Uint8Array;
   /** By the name of their array, `slip` for "piece.slip"; none for what no joint has. */
   readonly pieceNumbers = new Map<string, Float32Array>();
+  /** Force chains, snapshot by snapshot: none in pages of earlier versions. */
+  readonly hasChains: boolean;
+  readonly chainBlock: Uint32Array;
+  readonly chainMiddle: Float32Array;
+  readonly chainForce: Float32Array;
+  readonly chainHinge: Uint8Array;
+  private readonly chainBegin: Uint32Array;
+  readonly hasVelocity: boolean;
+  private readonly velocity: Float32Array;
   private readonly displacement: Float32Array;
   private readonly stress: Float32Array;
   private extentFound: Box | null = null;
@@ -100,6 +112,17 @@ export class Run {
       3 * this.blockCount,
       header.stress_quantum,
     );
+
+    this.hasVelocity = arrays.has("frame.velocity");
+    this.velocity = this.hasVelocity
+      ? decodeFrames(arrays.get("frame.velocity", "u8"), f, 2 * this.blockCount, header.velocity_quantum ?? 1)
+      : new Float32Array();
+    this.hasChains = arrays.has("chain.begin");
+    this.chainBegin = this.hasChains ? arrays.get("chain.begin", "u32") : new Uint32Array();
+    this.chainBlock = this.hasChains ? arrays.get("chain.block", "u32") : new Uint32Array();
+    this.chainMiddle = this.hasChains ? arrays.get("chain.middle", "f32") : new Float32Array();
+    this.chainForce = this.hasChains ? arrays.get("chain.force", "f32") : new Float32Array();
+    this.chainHinge = this.hasChains ? arrays.get("chain.hinge", "u8") : new Uint8Array();
 
     this.firstRing = new Uint32Array(this.blockCount + 1);
     for (const b of this.ringBlock) this.firstRing[b + 1]++;
@@ -199,12 +222,31 @@ export class Run {
     return [this.stress[at], this.stress[at + n], this.stress[at + 2 * n]];
   }
 
-  /** The joint pieces that hold at a moment: [begin, end), empty before the first contact snapshot. */
-  piecesAt(moment: Moment): [number, number] {
+  /** Velocity of the mass centre of a block, m/s. */
+  velocityAt(moment: Moment, block: number): [number, number] {
+    if (moment < 0 || !this.hasVelocity) return [0, 0];
+    const at = this.frameOf(moment) * 2 * this.blockCount + block;
+    return [this.velocity[at], this.velocity[at + this.blockCount]];
+  }
+
+  /** The contact snapshot that holds at a moment; −1 before the first. */
+  private snapshotAt(moment: Moment): number {
     const f = this.frameOf(moment);
     let k = -1;
     while (k + 1 < this.snapshotFrame.length && this.snapshotFrame[k + 1] <= f) k++;
+    return k;
+  }
+
+  /** The joint pieces that hold at a moment: [begin, end), empty before the first contact snapshot. */
+  piecesAt(moment: Moment): [number, number] {
+    const k = this.snapshotAt(moment);
     return k < 0 ? [0, 0] : [this.snapshotBegin[k], this.snapshotBegin[k + 1]];
+  }
+
+  /** The force chains, likewise. */
+  chainsAt(moment: Moment): [number, number] {
+    const k = this.snapshotAt(moment);
+    return k < 0 || !this.hasChains ? [0, 0] : [this.chainBegin[k], this.chainBegin[k + 1]];
   }
 
   /** The rock without the fixed frame around a domain; all blocks where there is no domain. */
@@ -215,7 +257,8 @@ export class Run {
 
   /**
    * What to show of the plane: the rock, of the frame around it only a margin, and the blocks that lie elsewhere when a stage
-   * ends. Not those so far away that they, or all else, would hardly be seen.
+   * ends. Not those so far away that all else would hardly be seen: pictures are scaled to the structure, not to the stone that flew
+   * farthest.
    */
   get extent(): Box {
     return (this.extentFound ??= this.findExtent());
@@ -238,7 +281,7 @@ export class Run {
         if (this.fixed[b] || this.statusAt(frame, b) === Status.excavated) continue;
         const block = widened(this.boxOfBlock(b, at), margin);
         const both = union(start, block);
-        if (sizeOf(both) <= Math.max(2 * sizeOf(start), 30 * sizeOf(block))) extent = union(extent, both);
+        if (sizeOf(both) <= mostGrowth * sizeOf(start)) extent = union(extent, both);
       }
     }
     return extent;

@@ -4,6 +4,7 @@ import { css, textWidths } from "./dom";
 import type { BlockField, Fields, JointField } from "./fields";
 import { count } from "./format";
 import { hatching } from "./hatching";
+import { newPath } from "./save/path";
 import { marks, type Mark } from "./axis_marks";
 import { Status, type Moment, type Run } from "./run";
 
@@ -14,6 +15,8 @@ export interface Look {
   exaggeration: number;
   blocks: BlockField;
   joints: JointField;
+  /** A name of src/picture/marks.h, or "none". */
+  marks: string;
 }
 
 const axisFont = 11; // px
@@ -33,7 +36,7 @@ export class SectionView {
   look: Look;
   selected = -1;
   hovered = -1;
-  private readonly context: CanvasRenderingContext2D;
+  private context: CanvasRenderingContext2D;
   private readonly u: Float32Array;
   private readonly since: Float32Array;
   private sinceMoment: Moment = -1;
@@ -42,6 +45,8 @@ export class SectionView {
   private width = 0;
   private height = 0;
   private ratio = 1;
+  /** Where the picture begins on what it is drawn on, px. */
+  private origin: [number, number] = [0, 0];
   private readonly extent: Box;
   private readonly camera: Camera;
   /** The camera while drawing: pixel = (ax + scaleNow x, ay − scaleNow y). */
@@ -77,13 +82,9 @@ export class SectionView {
 
   /** Makes the canvas as wide as given, and as high as the model then is within the limits of the options. */
   resize(width: number): void {
-    const { minX, maxX, minY, maxY } = this.extent;
-    const insetX = this.options.axes ? this.axisLeft + 8 : 0;
-    const insetY = this.options.axes ? axisBottom + 8 : 0;
-    const natural = ((maxY - minY) / (maxX - minX)) * (width - insetX) + insetY;
-    const height = Math.min(
-      Math.max(natural, this.options.minHeight ?? 0),
-      this.options.maxHeight ?? Infinity,
+    const height = Math.max(
+      this.heightFor(width, this.options.maxHeight ?? Infinity),
+      Math.min(this.options.minHeight ?? 0, this.options.maxHeight ?? Infinity),
     );
     this.width = Math.round(width);
     this.height = Math.round(height);
@@ -99,10 +100,18 @@ export class SectionView {
     this.axisLeft = leastAxisLeft;
   }
 
+  private innerSize(width: number, height: number): { width: number; height: number } {
+    if (!this.options.axes) return { width, height };
+    return { width: width - this.axisLeft - 8, height: height - axisBottom - 8 };
+  }
+
   private inner(): Frame {
-    if (!this.options.axes) return { left: 0, top: 0, width: this.width, height: this.height };
-    const left = this.axisLeft;
-    return { left, top: 8, width: this.width - left - 8, height: this.height - axisBottom - 8 };
+    const { axes } = this.options;
+    return {
+      left: axes ? this.axisLeft : 0,
+      top: axes ? 8 : 0,
+      ...this.innerSize(this.width, this.height),
+    };
   }
 
   toPixel(x: number, y: number): [number, number] {
@@ -199,6 +208,31 @@ export class SectionView {
     }
   }
 
+  /** Height of the picture in a width, at most so much, px. */
+  heightFor(width: number, most: number): number {
+    const { minX, maxX, minY, maxY } = this.extent;
+    const insets = this.options.axes ? [this.axisLeft + 8, axisBottom + 8] : [0, 0];
+    return Math.round(Math.min(most, ((maxY - minY) / (maxX - minX)) * (width - insets[0]) + insets[1]));
+  }
+
+  /** Pixels of a metre in a picture of this size. */
+  metres(width: number, height: number): number {
+    return this.camera.scale({ left: 0, top: 0, ...this.innerSize(width, height) });
+  }
+
+  /** Draws what is seen on another context than the page's: a part of a figure that is saved. */
+  drawOn(
+    context: CanvasRenderingContext2D,
+    at: { left: number; top: number; width: number; height: number; ratio: number },
+  ): void {
+    const { context: own, width, height, ratio } = this;
+    Object.assign(this, { context, width: at.width, height: at.height, ratio: at.ratio });
+    this.origin = [at.left, at.top];
+    this.draw();
+    Object.assign(this, { context: own, width, height, ratio });
+    this.origin = [0, 0];
+  }
+
   draw(): void {
     if (this.width === 0) return;
     this.update();
@@ -207,7 +241,7 @@ export class SectionView {
     this.scaleNow = this.camera.scale(this.inner());
     [this.ax, this.ay] = this.toPixel(0, 0);
     const inner = this.inner();
-    c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    c.setTransform(this.ratio, 0, 0, this.ratio, this.ratio * this.origin[0], this.ratio * this.origin[1]);
     c.fillStyle = css("--paper");
     c.fillRect(0, 0, this.width, this.height);
     c.save();
@@ -223,6 +257,7 @@ export class SectionView {
       (x, y) => [this.ax + this.scaleNow * x, this.ay - this.scaleNow * y],
       this.options.axes ? 1 : 0.6,
     );
+    this.drawMarks();
     this.drawMarked();
     this.drawOutside();
     c.restore();
@@ -231,7 +266,8 @@ export class SectionView {
 
   private drawBlocks(): void {
     const { run, look, context: c } = this;
-    const colors = this.fields.blockColors(look.blocks, look.moment, this.u, this.since, look.since);
+    const { blocks, moment, since, joints } = look;
+    const colors = this.fields.blockColors(blocks, moment, this.u, this.since, since, joints);
     // Paper shows between blocks that fill pixels in part, which makes patterns of small ones: they cover the seams themselves.
     const withEdges = this.blockPixels() >= smallestWithEdges;
     c.lineWidth = 1;
@@ -309,7 +345,7 @@ export class SectionView {
       const key = `${color} ${width.toFixed(1)}`;
       let batch = open.get(key);
       if (!batch || batch.pieces === piecesPerPath) {
-        batch = { color, width, path: new Path2D(), pieces: 0 };
+        batch = { color, width, path: newPath(), pieces: 0 };
         batches.push(batch);
         open.set(key, batch);
       }
@@ -346,6 +382,20 @@ export class SectionView {
       c.stroke(path);
     }
     c.lineCap = "butt";
+  }
+
+  private drawMarks(): void {
+    this.fields.marks.draw(this.look.marks, {
+      context: this.context,
+      moment: this.look.moment,
+      since: this.look.since,
+      u: this.u,
+      before: this.since,
+      drawn: this.drawn,
+      toPixel: (x, y) => [this.ax + this.scaleNow * x, this.ay - this.scaleNow * y],
+      scale: this.scaleNow,
+      fine: this.options.axes ? 1 : 0.7,
+    });
   }
 
   private drawMarked(): void {

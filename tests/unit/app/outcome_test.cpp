@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 namespace keyblock::app {
 namespace {
 
@@ -42,11 +44,25 @@ TEST(OutcomeText, OneAlignedRowPerStage) {
   const std::string text = outcome_text(settled_and_shaken(), 917);
   EXPECT_THAT(text, HasSubstr("917 blocks, 5502 degrees of freedom; 2000 steps in 5.0 s: 2.50 ms"));
   EXPECT_THAT(text, HasSubstr("largest overlap 0.400 mm"));
-  EXPECT_THAT(text, HasSubstr("\nstage             steps  time s  PGA m/s2  fallen  fallen m2"));
-  EXPECT_THAT(text, HasSubstr("\nin situ             120       -         -       0       0.00"));
-  EXPECT_THAT(text, HasSubstr("\nfirst earthquake   1880    3.76      1.25      12       3.50"));
-  EXPECT_THAT(text, HasSubstr("      14.7    12.50\n"));
+  EXPECT_THAT(text, HasSubstr("\nstage             steps  time   PGA  fallen  fallen"));
+  EXPECT_THAT(text, HasSubstr("\nin situ             120     -     -       0    0.00"));
+  EXPECT_THAT(text, HasSubstr("\nfirst earthquake   1880  3.76  1.25      12    3.50"));
+  EXPECT_THAT(text, HasSubstr("    14.7  12.50\n"));
   EXPECT_THAT(text, Not(HasSubstr("note:")));
+}
+
+TEST(OutcomeText, TheTableFitsATerminal) {
+  RunRecord run = settled_and_shaken();
+  run.stages[1].stage.name = "a stage whose name is long";
+  run.stages[1].steps = 1234567;
+  run.stages[1].damage.slip_max_ever = 2479.2;
+  const std::string text = outcome_text(run, 917);
+  const std::size_t from = text.find("\nstage ") + 1, to = text.find("12.50\n", from);
+  std::istringstream lines(text.substr(from, text.find("1234567") + 80 - from));
+  std::string line;
+  for (int k = 0; k < 4 && std::getline(lines, line); ++k)
+    EXPECT_LE(line.size(), 82U) << line;  // … has three bytes
+  EXPECT_EQ(to, std::string::npos);
 }
 
 TEST(OutcomeText, GravityIsNotTheEarthquake) {
