@@ -15,6 +15,7 @@
 #include "json_output.h"
 #include "loading/motion_measures.h"
 #include "motion_json.h"
+#include "motion_suite.h"
 
 namespace keyblock::app {
 namespace {
@@ -27,6 +28,7 @@ struct MotionArguments {
   bool as_json = false;
   loading::MotionReading reading;
   std::vector<double> window;  // empty, or from and to
+  std::string suite, target, spectra;
 };
 
 [[noreturn]] void refuse_output(const std::filesystem::path& output, std::string found,
@@ -110,14 +112,44 @@ void motions_as_json(const MotionArguments& arguments, int& exit_code) {
   print_json(json);
 }
 
+/// Exactly one of files and suite.
+void add_suite_options(CLI::App& command, MotionArguments& arguments, CLI::Option& files) {
+  CLI::Option* suite = command
+                           .add_option("--suite", arguments.suite,
+                                       "In the place of files: a list of records. Prints their intensities")
+                           ->type_name("CSV")
+                           ->excludes(&files);
+  command
+      .add_option("--target", arguments.target, "Spectrum that the suite is to have: period in s, SA in m/s2")
+      ->type_name("CSV")
+      ->needs(suite);
+  command.add_option("--spectra", arguments.spectra, "Write the spectra of the suite and its records")
+      ->type_name("CSV")
+      ->needs(suite);
+}
+
+void run_motion(const MotionArguments& arguments, int& exit_code) {
+  if (!arguments.suite.empty()) {
+    if (arguments.plot || !arguments.window.empty() || arguments.reading.by_hand() ||
+        !arguments.reading.unit.empty())
+      throw CLI::ExcludesError("--suite", "--plot, --window and what says how a file is read");
+    return show_suite(
+        {arguments.suite, arguments.target, arguments.spectra, arguments.force, arguments.as_json});
+  }
+  if (arguments.files.empty()) throw CLI::RequiredError("FILE");
+  if (arguments.as_json) return motions_as_json(arguments, exit_code);
+  show_motions(arguments);
+}
+
 }  // namespace
 
 void add_motion(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<MotionArguments>();
   CLI::App* command =
       app.add_subcommand("motion", "What a ground motion record holds: components, dt, points, peak, unit");
-  command->add_option("FILE", arguments->files, loading::motion_format_names() + " of time and accelerations")
-      ->required();
+  CLI::Option* files = command->add_option("FILE", arguments->files,
+                                           loading::motion_format_names() + " of time and accelerations");
+  add_suite_options(*command, *arguments, *files);
   command->add_option("--skip", arguments->reading.skip, "Read plain numbers after this many lines")
       ->type_name("LINES");
   command->add_option("--column", arguments->reading.column, "Read plain numbers of this column, from 1")
@@ -140,17 +172,14 @@ void add_motion(CLI::App& app, int& exit_code) {
       ->type_name("SVG")
       ->capture_default_str()
       ->needs("--plot");
-  command->add_flag("--force", arguments->force, "Replace the SVG file even if it is no plot of motions")
-      ->needs("--plot");
+  command->add_flag("--force", arguments->force,
+                    "Replace the SVG or CSV file even if it is none of this command");
   command->add_flag("--json", arguments->as_json,
                     "For other programs: components and mistakes as JSON on standard output");
   command->footer(
       "Examples:\n  keyblock motion motions/*.smc --plot -o record.svg\n  keyblock motion other.txt --skip 3 "
       "--dt 0.01 --unit g");
-  command->callback([arguments, &exit_code] {
-    if (arguments->as_json) return motions_as_json(*arguments, exit_code);
-    show_motions(*arguments);
-  });
+  command->callback([arguments, &exit_code] { run_motion(*arguments, exit_code); });
 }
 
 }  // namespace keyblock::app

@@ -317,7 +317,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.gravity = scenario.gravity;
   setup.in_situ = in_situ_stress(scenario, simulation::boundary_box(setup).max.y);
   setup.time_step = scenario.time_step;
-  setup.motions = read_motions(scenario, notes);
+  setup.motions = read_motions(scenario, notes, realization);
   const std::vector<GroundFact> earthquakes = earthquake_facts(scenario, setup.motions);
   const std::vector<simulation::JointPiece> pieces = place_far_rock(scenario, setup);
   take_to_base(scenario, setup);

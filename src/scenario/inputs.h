@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,17 @@ std::vector<rockmass::Trace> read_trace_maps(
 /// All [[motion]], in the order of the scenario: records read, projected on the section and cut to their window,
 /// tables and sines as they are; unscaled. What the user should know is added to `warnings`: notes of the readers,
 /// directions that are not those the files name.
-std::vector<loading::GroundMotion> read_motions(const Scenario& scenario, std::vector<std::string>& warnings);
+/// Those of a suite that are turned have the angle of the realization.
+std::vector<loading::GroundMotion> read_motions(const Scenario& scenario, std::vector<std::string>& warnings,
+                                                int realization = 0);
+
+/// A record in its window, as it is measured.
+struct MeasuredRecord {
+  std::optional<loading::GroundMotion> horizontal;  ///< loading::horizontal_motion
+  double azimuth = 0.0;                             ///< °, of the first horizontal component
+  loading::GroundMotion section;
+};
+MeasuredRecord measured_record(const Scenario& scenario, const MotionSpec& spec);
 
 /// RotD50 of the records of all [[motion]], in their order, over the window and after their baseline and target; unscaled. No numbers of what
 /// has no two horizontal components.

@@ -293,7 +293,8 @@ class Plausibility {
     for (const MotionSpec& motion : scenario_.motions) {
       const int index = static_cast<int>(&motion - scenario_.motions.data());
       const auto uses = [&](const Stage& stage) { return stage.motion == index; };
-      if (!any_stage(uses) && !is_varied(motion)) warn("{}: no stage uses it", motion.path);
+      if (motion.suite < 0 && !any_stage(uses) && !is_varied(motion))
+        warn("{}: no stage uses it", motion.path);
     }
   }
 

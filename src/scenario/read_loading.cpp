@@ -288,6 +288,7 @@ void read_loading(TableReader& root, Scenario& scenario) {
               {.meaning = "A motion of the base: a record with its components, or the acceleration in x and "
                           "y: rows, a sine, or a file."},
               [](TableReader& t, MotionSpec& motion) { read_motion(t, motion); });
+  read_suites(root, scenario);
   root.number(
       "load_factor", scenario.load_factor,
       {.meaning = "All [[load]] are multiplied by it.", .at_least = 0.0, .usual = &usual::load_factor});

@@ -5,17 +5,11 @@
 #include <utility>
 
 #include "loading/motion_units.h"
+#include "scenario/motion_words.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
 namespace {
-
-using loading::Baseline;
-
-constexpr Word<Baseline> baselines[] = {{"none", Baseline::none},
-                                        {"demean", Baseline::demean},
-                                        {"linear", Baseline::linear},
-                                        {"taper", Baseline::taper}};
 
 constexpr Word<MotionPlace> places[] = {{"outcrop", MotionPlace::outcrop},
                                         {"incident", MotionPlace::incident},
@@ -213,7 +207,7 @@ void read_motion(TableReader& t, MotionSpec& motion) {
               .fallback = "the whole record",
               .applies = record || documenting,
               .condition = "components or files"});
-  t.word("baseline", motion.baseline, baselines,
+  t.word("baseline", motion.baseline, baseline_words,
          {.meaning =
               "What is done to the window: nothing; its mean taken off; a straight line taken off so that "
               "the ground ends at rest where it was; a cosine taper at both ends (5 % each).",

@@ -171,6 +171,21 @@ void check_scale(TableReader& t, const Stage& stage, const Scenario& scenario) {
          fmt::format("one of the two: scale, or {} of the motion", target));
 }
 
+void read_motion_of_stage(TableReader& t, Stage& stage, const Rule& rule, const Scenario& scenario) {
+  std::string motion, suite, first;
+  if (const Value* given = t.find("motion"); given != nullptr && given->is(Value::Type::string)) {
+    for (const SuiteSpec& spec : scenario.suites) {
+      if (spec.name != given->text || spec.records.empty()) continue;
+      suite = spec.name;
+      first = spec.motion_name(0);
+    }
+  }
+  if (!t.reference("motion", motion, "motion", rule, suite)) return;
+  if (motion == suite && !suite.empty()) motion = first;
+  const auto& names = t.context().list_names["motion"];
+  stage.motion = static_cast<int>(std::find(names.begin(), names.end(), motion) - names.begin());
+}
+
 void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
   t.name("name", stage.name, "stage", {.meaning = "Name in results and key paths.", .required = true});
   const bool known = t.word(
@@ -186,13 +201,12 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
   check_excavated_once(t, stage, scenario);
   read_install(t, stage, scenario);
   read_release(t, stage, settle, scenario);
-  std::string motion;
-  if (t.reference("motion", motion, "motion",
-                  only(shake, "kind = \"shake\"",
-                       {.meaning = "The ground motion.", .required = known || t.documenting()}))) {
-    const auto& names = t.context().list_names["motion"];
-    stage.motion = static_cast<int>(std::find(names.begin(), names.end(), motion) - names.begin());
-  }
+  read_motion_of_stage(
+      t, stage,
+      only(shake, "kind = \"shake\"",
+           {.meaning = "The ground motion; of a suite its name, for its first record, or `SUITE/RECORD`.",
+            .required = known || t.documenting()}),
+      scenario);
   t.number(
       "scale", stage.scale,
       only(shake, "kind = \"shake\"", {.meaning = "Factor on its accelerations.", .usual = &usual::factor}));

@@ -295,6 +295,7 @@ void read_scenario(TableReader& root, Scenario& scenario) {
   read_safety(root, scenario);
   read_study(root, scenario);
   Consistency(root, scenario).check();
+  if (!root.documenting() && !scenario.study) keep_used_records(scenario);
   if (!root.documenting()) add_trial_stage(scenario);
 }
 

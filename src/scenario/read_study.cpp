@@ -161,17 +161,20 @@ void read_marginal(TableReader& t, StudySpec& study) {
 }
 
 void read_control(TableReader& t, StudySpec& study) {
+  const bool has_suite = !study.shaking.empty();
+  study.control = has_suite && study.since != from_the_start;
   t.boolean(
       "control", study.control,
       {.meaning = "Runs each rock mass once more without the shaking that comes after `since`. What comes "
                   "down in that run, gravity brought "
-                  "down, and it is taken off what counts as brought down by the shaking."});
+                  "down, and it is taken off what counts as brought down by the shaking. True by default "
+                  "with [[study.shaking]]."});
   if (study.control && study.since == from_the_start)
     t.fail("control", "true with since = \"start\", which counts all that gravity brought down",
            "one of the two");
 }
 
-void read_keys_of_study(TableReader& t, StudySpec& study) {
+void read_keys_of_study(TableReader& t, StudySpec& study, const Scenario& scenario) {
   const bool until = t.find("until") != nullptr;
   Rule rule{.meaning = "Number of realizations of the joint sets.", .at_least = 1.0, .applies = !until};
   rule.condition = until ? "`until` left out" : "";
@@ -186,6 +189,7 @@ void read_keys_of_study(TableReader& t, StudySpec& study) {
   t.word("sampling", study.latin_hypercube, samplings, sampling);
   t.tables("vary", study.vary, {.meaning = "One axis of the grid; all combinations are run."},
            [](TableReader& v, VarySpec& vary) { read_vary(v, vary); });
+  read_shaking(t, study, scenario);
   t.reference("stage", study.stage, "stage",
               {.meaning = "At whose end the measures are compared.", .fallback = "the last stage"});
   t.reference("since", study.since, "stage",
@@ -237,7 +241,7 @@ void read_study(TableReader& root, Scenario& scenario) {
   root.table("study",
              {.meaning = "A Monte Carlo study for `keyblock study`: realizations × a grid of values "
                          "([guide](studies.md))."},
-             [&](TableReader& t) { read_keys_of_study(t, scenario.study.emplace()); });
+             [&](TableReader& t) { read_keys_of_study(t, scenario.study.emplace(), scenario); });
   if (scenario.study && scenario.study->latin_hypercube) scenario.strata = scenario.study->realizations;
 }
 

@@ -13,6 +13,7 @@
 #include "geometry/polygon.h"
 #include "loading/load.h"
 #include "loading/projection.h"
+#include "loading/suite_list.h"
 #include "model/options.h"
 #include "record/stage.h"
 #include "rockmass/joint_set.h"
@@ -243,6 +244,21 @@ struct MotionSpec {
   std::optional<double> depth;       ///< m below the ground, of a record within
   std::optional<double> pga, pgv;    ///< m/s², m/s: what the peak along the section is brought to
   std::string path;
+  int suite = -1;            ///< place of the suite that it is of; −1: it stands in the file
+  bool significant = false;  ///< the window is that of significant shaking
+  bool turned = false;       ///< about the vertical, by an angle of its own in each realization
+};
+
+/// A list of records, each of which is a motion.
+struct SuiteSpec {
+  std::string name;
+  std::filesystem::path file;
+  std::vector<loading::SuiteRecord> records;
+  std::string path;
+  /// "crustal/RSN1"
+  [[nodiscard]] std::string motion_name(std::size_t record) const {
+    return name + '/' + records.at(record).name;
+  }
 };
 
 /// Warnings of choices that are meant, `accept_warnings`.
@@ -290,8 +306,9 @@ struct Scenario {
       drawings;                      ///< of block maps and excavations, which are read with the scenario
   std::vector<std::string> skipped;  ///< what of them is no line, in words
   std::optional<InSituSpec> in_situ;
-  double time_step = 0.0;  ///< s; 0: not given, and no stages
-  std::vector<MotionSpec> motions;
+  double time_step = 0.0;           ///< s; 0: not given, and no stages
+  std::vector<MotionSpec> motions;  ///< those of suites after all others
+  std::vector<SuiteSpec> suites;
   std::vector<loading::Load> loads;
   std::vector<loading::Support> supports;
   std::vector<loading::Spring> springs;

@@ -58,6 +58,12 @@ void read_water(TableReader& root, Scenario& scenario);
 void read_water_of_stage(TableReader& t, record::Stage& stage, const Scenario& scenario);
 /// One [[motion]].
 void read_motion(TableReader& t, MotionSpec& motion);
+/// [[suite]], after all [[motion]]: its records become motions.
+void read_suites(TableReader& root, Scenario& scenario);
+/// Takes out the records of suites that no stage uses: a run has no need of them, a study has.
+void keep_used_records(Scenario& scenario);
+/// [[study.shaking]], after the stages.
+void read_shaking(TableReader& t, StudySpec& study, const Scenario& scenario);
 /// [time], [[stage]], [[history]], [damage], [output], and what read_solver() reads.
 void read_run(TableReader& root, Scenario& scenario);
 /// [auto_order], [solver].

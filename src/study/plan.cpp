@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
@@ -16,6 +15,7 @@
 #include "scenario/override.h"
 #include "scenario/parse.h"
 #include "scenario/sections.h"
+#include "scenario/shaking_axes.h"
 #include "scenario/shaking_checks.h"
 #include "study/rotation.h"
 #include "study/variant.h"
@@ -80,7 +80,10 @@ void read_all(const Scenario& base, Plan& plan, std::vector<std::string>* warnin
 void check_count(const Plan& plan, const Scenario& scenario, std::size_t variants) {
   double count = static_cast<double>(plan.realizations) * static_cast<double>(variants);
   for (const scenario::VarySpec& axis : plan.axes)
-    count *= axis.per_realization ? *axis.per_realization : static_cast<double>(axis.values.size());
+    count *= axis.per_realization
+                 ? *axis.per_realization *
+                       static_cast<double>(axis.of_block.value_or(static_cast<int>(axis.block)))
+                 : static_cast<double>(axis.values.size());
   if (count <= most_runs) return;
   throw InputError(Diagnostic{scenario.where("study"), "study", fmt::format("{:.3g} runs", count),
                               fmt::format("at most {:.0e}", most_runs), ""});
@@ -138,8 +141,10 @@ class Realization {
 
   /// Its key; lists it where it is the first time that it is asked for.
   std::string control_of(std::vector<std::vector<std::string>> values) {
-    for (std::size_t a = 0; a < values.size(); ++a)
+    for (std::size_t a = 0; a < values.size(); ++a) {
       if (of_scales_[a]) values[a].assign(values[a].size(), "0");
+      if (!plan_.axes[a].unshaken.empty()) values[a] = plan_.axes[a].unshaken;
+    }
     PlannedRun run{"", 0, std::move(values), unshaken_variant, true};
     run.key = hash_of(run);
     if (known_.insert(run.key).second) runs_.push_back(run);
@@ -160,8 +165,14 @@ bool is_its_turn(const Plan& plan, const PlannedRun& run, int realization) {
     if (!axis.per_realization) continue;
     const auto place =
         static_cast<std::size_t>(std::ranges::find(axis.values, run.values[a]) - axis.values.begin());
-    const auto count = static_cast<std::size_t>(*axis.per_realization);
-    if (!takes_value(static_cast<std::size_t>(realization), place, axis.values.size(), count)) return false;
+    const auto count = static_cast<std::size_t>(*axis.per_realization),
+               i = static_cast<std::size_t>(realization);
+    const std::size_t blocks = axis.values.size() / axis.block;
+    const auto turn = turn_of(i, place / axis.block, blocks, count);
+    if (!turn) return false;
+    if (axis.of_block && !takes_level(i, *turn, blocks, place % axis.block, axis.block,
+                                      static_cast<std::size_t>(*axis.of_block)))
+      return false;
   }
   return true;
 }
@@ -303,53 +314,6 @@ void keep_places(const std::vector<PlannedRun>& earlier, Plan& plan) {
   plan.runs = std::move(all);
 }
 
-MapGrid map_grid(const Scenario& scenario) {
-  const Box model = scenario::box_of_model(scenario);
-  Box box;
-  for (const scenario::ExcavationSpec& spec : scenario.excavations) {
-    for (const Vec2 p : scenario::excavation_outline(spec)) box.add(p);
-  }
-  double cell = 0.0;
-  if (scenario.excavations.empty()) {
-    box = model;
-    cell = std::max(box.size().x, box.size().y) / 80.0;
-  } else {
-    Box opening;
-    for (const Vec2 p : scenario::excavation_outline(scenario.excavations.front())) opening.add(p);
-    const double width = opening.size().x;
-    box = {box.min - Vec2{width, width}, box.max + Vec2{width, width}};
-    box.min = {std::max(box.min.x, model.min.x), std::max(box.min.y, model.min.y)};
-    box.max = {std::min(box.max.x, model.max.x), std::min(box.max.y, model.max.y)};
-    cell = width / 40.0;
-  }
-  if (scenario.study && scenario.study->map_cell) cell = *scenario.study->map_cell;
-  const Vec2 size = box.size();
-  if (!(cell > 0.0) || !(size.x > 0.0) || !(size.y > 0.0)) return {};
-  if (size.x / cell * (size.y / cell) > most_cells) {
-    throw InputError(Diagnostic{scenario.where("study.map.cell"), "study.map.cell",
-                                fmt::format("{:.2g} cells", size.x / cell * (size.y / cell)),
-                                fmt::format("at most {:.0e} cells", most_cells), ""});
-  }
-  return {box.min, cell, static_cast<int>(std::ceil(size.x / cell - 1e-9)),
-          static_cast<int>(std::ceil(size.y / cell - 1e-9))};
-}
-
-std::vector<DamageLevel> damage_levels(const Scenario& scenario) {
-  std::vector<DamageLevel> levels;
-  if (scenario.study) {
-    for (const scenario::LevelSpec& level : scenario.study->levels)
-      levels.push_back({level.name, level.measure, level.threshold});
-  }
-  if (!levels.empty()) return levels;
-  double area = 0.0;
-  for (const scenario::ExcavationSpec& spec : scenario.excavations)
-    area += std::abs(signed_area(scenario::excavation_outline(spec)));
-  if (area == 0.0) return {{"any", "fallen_blocks", 0.0}};
-  return {{"light", "fallen_area_m2", 0.002 * area},
-          {"moderate", "fallen_area_m2", 0.02 * area},
-          {"severe", "fallen_area_m2", 0.1 * area}};
-}
-
 ScenarioText read_scenario_text(const fs::path& file, std::vector<std::string> overrides) {
   return {read_file(file, scenario::largest_scenario), file, std::move(overrides)};
 }
@@ -383,6 +347,8 @@ Plan make_plan(const ScenarioText& source, const std::string& version, std::vect
   plan.realizations = study.until ? study.until->maximum : study.realizations;
   plan.strata = scenario.strata;
   plan.axes = study.vary;
+  for (scenario::VarySpec& axis : scenario::shaking_axes(scenario, warnings))
+    plan.axes.push_back(std::move(axis));
   plan.stage = study.stage.empty() ? scenario.stages.back().name : study.stage;
   plan.before_shaking = stage_before_shaking(scenario, plan.stage);
   plan.since = planned_since(study.since, plan.before_shaking);

@@ -38,6 +38,7 @@ PAGES = [
     "docs/studies.md",
     "docs/risk.md",
     "docs/study-report.md",
+    "docs/suites.md",
     "docs/user-guide.md",
     "docs/verification.md",
     "docs/vocabulary.md",

@@ -90,7 +90,9 @@ TEST(Reference, DefaultsTypesUnitsAndConditions) {
   EXPECT_EQ(state->type, "\"plane-stress\" or \"plane-strain\"");
   EXPECT_EQ(state->fallback, "\"plane-stress\"");
   const KeyReference* motion = find_key(*find_section(sections, "[[stage]]"), "motion");
-  EXPECT_EQ(motion->meaning, "The ground motion. Only with kind = \"shake\".");
+  EXPECT_EQ(motion->meaning,
+            "The ground motion; of a suite its name, for its first record, or `SUITE/RECORD`. Only with kind "
+            "= \"shake\".");
   EXPECT_NE(find_key(*find_section(sections, "[[motion]]"), "components.file"), nullptr);
 }
 
