@@ -48,8 +48,10 @@ void read_drawn_outline(TableReader& t, ExcavationSpec& spec, const rockmass::Ma
 void read_boundary(TableReader& root, Scenario& scenario);
 /// [in_situ], [[motion]], [[load]], [[support]], [[spring]].
 void read_loading(TableReader& root, Scenario& scenario);
-/// [[bolt]], and the names of all that stages install.
+/// [[bolt]], and the names of springs and bolts for stages that install them.
 void read_bolts(TableReader& root, Scenario& scenario);
+/// [[liner]], likewise.
+void read_liners(TableReader& root, Scenario& scenario);
 /// [water], after all joints.
 void read_water(TableReader& root, Scenario& scenario);
 /// `water` of a stage.

@@ -35,10 +35,10 @@ void add_crossings(const Ring& ring, Vec2 head, Vec2 axis, std::vector<double>& 
   }
 }
 
-/// The stage that installs a bolt, by index; −1: it is there from the start.
-std::ptrdiff_t installing_stage(const RunSetup& setup, const Bolt& bolt) {
-  if (bolt.staged < 0) return -1;
-  const std::string& name = setup.staged_supports[at(bolt.staged)];
+/// The stage that installs a support, by index; −1: it is there from the start.
+std::ptrdiff_t installing_stage(const RunSetup& setup, int staged) {
+  if (staged < 0) return -1;
+  const std::string& name = setup.staged_supports[at(staged)];
   const auto installs = [&](const record::Stage& stage) {
     return std::ranges::find(stage.install, name) != stage.install.end();
   };
@@ -127,19 +127,18 @@ class BoltBuilder {
 
 }  // namespace
 
-std::vector<BoltPiece> bolt_pieces(const RunSetup& setup, std::size_t k) {
-  const Bolt& bolt = setup.bolts[k];
-  const double length = bolt.length();
-  const Vec2 axis = axis_of(bolt), head = bolt.head + aside_share * length * Vec2{-axis.y, axis.x};
-  const std::ptrdiff_t installed = installing_stage(setup, bolt);
+std::vector<BoltPiece> rock_along(const RunSetup& setup, Vec2 from, Vec2 to, int staged) {
+  const double length = norm(to - from);
+  const Vec2 axis = (to - from) / length;
+  const std::ptrdiff_t installed = installing_stage(setup, staged);
   std::vector<BoltPiece> pieces;
   std::vector<double> places;
   for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
     if (is_gone(setup, b, installed)) continue;
     const Polygon& polygon = setup.system.blocks[b].polygon;
     places.clear();
-    add_crossings(polygon.outer, head, axis, places);
-    for (const Ring& hole : polygon.holes) add_crossings(hole, head, axis, places);
+    add_crossings(polygon.outer, from, axis, places);
+    for (const Ring& hole : polygon.holes) add_crossings(hole, from, axis, places);
     std::ranges::sort(places);
     for (std::size_t i = 0; i + 1 < places.size(); i += 2) {
       const BoltPiece piece{b, std::max(places[i], 0.0), std::min(places[i + 1], length)};
@@ -147,6 +146,15 @@ std::vector<BoltPiece> bolt_pieces(const RunSetup& setup, std::size_t k) {
     }
   }
   std::ranges::sort(pieces, {}, [](const BoltPiece& p) { return std::pair(p.from, p.block); });
+  return pieces;
+}
+
+std::vector<BoltPiece> bolt_pieces(const RunSetup& setup, std::size_t k) {
+  const Bolt& bolt = setup.bolts[k];
+  const double length = bolt.length();
+  const Vec2 axis = axis_of(bolt), aside = aside_share * length * Vec2{-axis.y, axis.x};
+  std::vector<BoltPiece> pieces =
+      rock_along(setup, bolt.head + aside, bolt.head + aside + length * axis, bolt.staged);
   const std::string key = fmt::format("bolt[{}]", k);
   if (pieces.empty() || pieces.front().from > end_share * length) refuse_end(setup, key + ".from", bolt.head);
   if (pieces.back().to < (1.0 - end_share) * length) refuse_end(setup, key + ".to", bolt.toe);
