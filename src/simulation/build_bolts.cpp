@@ -57,6 +57,27 @@ bool is_gone(const RunSetup& setup, std::size_t block, std::ptrdiff_t installed)
          "a point of rock that is there when the bolt is installed");
 }
 
+/// axis: direction, of length 1.
+std::vector<BoltPiece> pieces_along(const RunSetup& setup, Vec2 from, Vec2 axis, double length, int staged) {
+  const std::ptrdiff_t installed = installing_stage(setup, staged);
+  std::vector<BoltPiece> pieces;
+  std::vector<double> places;
+  for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
+    if (is_gone(setup, b, installed)) continue;
+    const Polygon& polygon = setup.system.blocks[b].polygon;
+    places.clear();
+    add_crossings(polygon.outer, from, axis, places);
+    for (const Ring& hole : polygon.holes) add_crossings(hole, from, axis, places);
+    std::ranges::sort(places);
+    for (std::size_t i = 0; i + 1 < places.size(); i += 2) {
+      const BoltPiece piece{b, std::max(places[i], 0.0), std::min(places[i + 1], length)};
+      if (piece.length() > least_share * length) pieces.push_back(piece);
+    }
+  }
+  std::ranges::sort(pieces, {}, [](const BoltPiece& p) { return std::pair(p.from, p.block); });
+  return pieces;
+}
+
 class BoltBuilder {
  public:
   BoltBuilder(const RunSetup& setup, const dynamics::Model& model, std::size_t k, BoltSprings& to)
@@ -129,32 +150,14 @@ class BoltBuilder {
 
 std::vector<BoltPiece> rock_along(const RunSetup& setup, Vec2 from, Vec2 to, int staged) {
   const double length = norm(to - from);
-  const Vec2 axis = (to - from) / length;
-  const std::ptrdiff_t installed = installing_stage(setup, staged);
-  std::vector<BoltPiece> pieces;
-  std::vector<double> places;
-  for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
-    if (is_gone(setup, b, installed)) continue;
-    const Polygon& polygon = setup.system.blocks[b].polygon;
-    places.clear();
-    add_crossings(polygon.outer, from, axis, places);
-    for (const Ring& hole : polygon.holes) add_crossings(hole, from, axis, places);
-    std::ranges::sort(places);
-    for (std::size_t i = 0; i + 1 < places.size(); i += 2) {
-      const BoltPiece piece{b, std::max(places[i], 0.0), std::min(places[i + 1], length)};
-      if (piece.length() > least_share * length) pieces.push_back(piece);
-    }
-  }
-  std::ranges::sort(pieces, {}, [](const BoltPiece& p) { return std::pair(p.from, p.block); });
-  return pieces;
+  return pieces_along(setup, from, (to - from) / length, length, staged);
 }
 
 std::vector<BoltPiece> bolt_pieces(const RunSetup& setup, std::size_t k) {
   const Bolt& bolt = setup.bolts[k];
   const double length = bolt.length();
   const Vec2 axis = axis_of(bolt), aside = aside_share * length * Vec2{-axis.y, axis.x};
-  std::vector<BoltPiece> pieces =
-      rock_along(setup, bolt.head + aside, bolt.head + aside + length * axis, bolt.staged);
+  std::vector<BoltPiece> pieces = pieces_along(setup, bolt.head + aside, axis, length, bolt.staged);
   const std::string key = fmt::format("bolt[{}]", k);
   if (pieces.empty() || pieces.front().from > end_share * length) refuse_end(setup, key + ".from", bolt.head);
   if (pieces.back().to < (1.0 - end_share) * length) refuse_end(setup, key + ".to", bolt.toe);
