@@ -82,13 +82,25 @@ class Elements:
         return self._numbers("yielded")
 
     @cached_property
+    def moment(self) -> np.ndarray:
+        """(n,), N m/m, of liners: positive where it stretches the side of the opening. Files of earlier versions do not have it."""
+        return self._numbers("moment")
+
+    @cached_property
+    def shear(self) -> np.ndarray:
+        """(n,), N/m, the shear force of liners. Files of earlier versions do not have it."""
+        return self._numbers("shear")
+
+    @cached_property
     def present(self) -> np.ndarray:
         """(n,), whether it is there."""
         return self._numbers("present").astype(bool)
 
     @property
     def utilization(self) -> np.ndarray:
-        """(n,), size of the force over the limit; NaN where there is none."""
+        """(n,), size of the force over the limit, of liners the largest stress over its strength; NaN where there is none."""
+        if len(self) and self._frame is not None and "liner" in self.kinds:
+            return self._numbers("utilization")
         return np.where(np.isfinite(self.limit), np.abs(self.force) / self.limit, np.nan)
 
     def index_of(self, name: str) -> int:
@@ -99,11 +111,14 @@ class Elements:
             raise KeyError(f"no element {name!r}{record.did_you_mean(name, self.names)}")
         return self.names.index(name)
 
+    def _of_liners(self) -> dict[str, np.ndarray]:
+        return {"moment": self.moment, "shear": self.shear} if "liner" in self.kinds else {}
+
     def table(self) -> Any:
         """A row for each, as pandas.DataFrame. Throws MissingPackageError without pandas."""
         columns: dict[str, Any] = {
             "name": self.names, "kind": self.kinds, "present": self.present, "force": self.force, "elongation": self.elongation,
-            "yielded": self.yielded, "limit": self.limit, "utilization": self.utilization, "spacing": self.spacing,
+            "yielded": self.yielded, **self._of_liners(), "limit": self.limit, "utilization": self.utilization, "spacing": self.spacing,
         }  # fmt: skip
         rows = [dict(zip(columns, row)) for row in zip(*columns.values())]
         return tables.data_frame(rows, "elements", list(columns))

@@ -317,8 +317,20 @@ void BlockTerms::add_drag(std::size_t b, double stiffness, std::span<const doubl
   }
 }
 
+void BlockTerms::add_spring(std::size_t b, Vec2 along, std::span<const double> phi, double stiffness,
+                            double force) {
+  const Body& body = model_->body(b);
+  const int n = 2 * body.size, stride = linalg::padded_rows(n);
+  double* h = &h_[h_first_[b]];
+  const auto gradient = [&](int k) { return phi[at(k / 2)] * (k % 2 == 0 ? along.x : along.y); };
+  for (int l = 0; l < n; ++l) {
+    b_[body.first + at(l)] += force * gradient(l);
+    for (int k = 0; k < n; ++k) h[l * stride + k] += stiffness * gradient(k) * gradient(l);
+  }
+}
+
 void BlockTerms::add_force(std::size_t b, const double* phi, Vec2 force) {
-  const Block& block = model_->blocks[b];
+  const Body& block = model_->body(b);
   add_at(phi, block.size, force, &b_[block.first]);
 }
 

@@ -28,11 +28,14 @@ class BlockTerms {
   /// at D = 0, N per thickness. phi: the N basis functions at the point.
   void add_spring(std::size_t block, int axis, std::span<const double> phi, double stiffness, double force);
 
+  /// Adds a spring that acts on Σ φ_k a_k along a direction of length 1, of a body: stiffness and force likewise.
+  void add_spring(std::size_t body, Vec2 along, std::span<const double> phi, double stiffness, double force);
+
   /// Adds the same stiffness, N/m per thickness and unit area, to all coefficients of a block, and the force that each has at D = 0.
   void add_drag(std::size_t block, double stiffness, std::span<const double> force);
 
-  /// Adds a force at a point of a block, N per thickness. phi: the N basis functions at the point.
-  void add_force(std::size_t block, const double* phi, Vec2 force);
+  /// Adds a force at a point of a body, N per thickness. phi: the N basis functions at the point.
+  void add_force(std::size_t body, const double* phi, Vec2 force);
 
   /// y = H x, of one block.
   void multiply(std::size_t block, std::span<const double> x, std::span<double> y) const;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -58,7 +59,11 @@ struct Carried {
       0.0;  ///< m, of springs the change of length since they were installed, of supports the mean way of what they support
   double yielded = 0.0;  ///< m of it, that does not come back
   bool present = false;
-  bool ruptured = false;  ///< it has broken, and is there no more
+  bool ruptured = false;  ///< it has broken, and is there no more; of a liner: the rock has come off it
+  double moment = 0.0;  ///< N m per thickness, of liners: positive where it stretches the side of the opening
+  double shear = 0.0;   ///< N per thickness, of liners
+  double utilization =
+      std::numeric_limits<double>::quiet_NaN();  ///< of what has other limits than Element::limit
 };
 
 /// What some rows of a step are, that all of the problem asks for.
@@ -94,6 +99,8 @@ struct LawChange {
   /// none, but a limit that goes with other forces.
   double excess = 0.0;
   double least = 0.0, largest = 0.0;  ///< N per thickness; both 0: there is no spring any more
+  double friction =
+      -1.0;  ///< of a bond that breaks: from now on its normal spring presses alone, and this is its coefficient; −1: as it was
 };
 
 /// Where a coupling writes its rows.

@@ -53,18 +53,20 @@ class SpringArray {
   }
   [[nodiscard]] std::size_t size() const { return size_; }
 
-  /// A row of a coupling other than contacts, at D = 0. Both springs push and pull; 0: there is none.
+  /// A row of a coupling other than contacts, at D = 0. Both springs push and pull, unless it has friction; 0: there is none.
   struct TwoSided {
     double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< N/m per thickness
     double least_shear = 0.0, largest_shear = 0.0;         ///< N per thickness; least ≤ 0 ≤ largest
     double normal = 0.0, shear = 0.0;                      ///< m, y₀ and w₀
+    double friction =
+        -1.0;  ///< of a row that presses alone, whose limits of shear are Coulomb's; −1: it is none
   };
   void set_row(std::size_t c, const TwoSided& row) {
     kn[c] = row.normal_stiffness;
     ks[c] = row.shear_stiffness;
     set_limits(c, row.least_shear, row.largest_shear);
-    low[c] = -HUGE_VAL;
-    friction[c] = -1.0;
+    low[c] = row.friction < 0.0 ? -HUGE_VAL : 0.0;
+    friction[c] = row.friction;
     constant[c] = slipped[c] = 0.0;
     y0[c] = y[c] = row.normal;
     w0[c] = w[c] = row.shear;

@@ -34,6 +34,12 @@ void ForceBalance::predict(const Model& model, const StepProblem& problem, std::
     left_[b] = problem.terms().inertia(b) * length_of(of_block);
     left_down_[b] = problem.terms().inertia(b) * dot(down, {of_block[0], of_block[1]});
   }
+  left_of_lines_ = 0.0;
+  for (std::size_t b = model.blocks.size(); b < model.bodies(); ++b) {
+    const Body& body = model.body(b);
+    const double left = problem.terms().inertia(b) * length_of(d.subspan(body.first, 2 * at(body.size)));
+    left_of_lines_ = std::max(left_of_lines_, left / std::max(problem.terms().weight(b), 1e-300));
+  }
 }
 
 void ForceBalance::find_scales(const Model& model, const StepProblem& problem) {

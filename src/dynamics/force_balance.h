@@ -42,6 +42,10 @@ class ForceBalance {
     return most;
   }
 
+  /// Of bodies that are no blocks: the largest force that the inertia of the step left, over the weight of the block that they are in. Blocks may be
+  /// at rest long before a liner on them is.
+  [[nodiscard]] double left_of_lines() const { return left_of_lines_; }
+
   /// Before the position changes: what the inertia of the step leaves. problem: of the step; d: its increment.
   void predict(const Model& model, const StepProblem& problem, std::span<const double> d);
   /// Sets the bounds of the springs of a problem to those of the normal forces at D = 0.
@@ -55,6 +59,7 @@ class ForceBalance {
 
   std::vector<OfBlock> of_;
   std::vector<double> scale_, body_force_;  ///< N and kg, of coefficients: over √A
+  double left_of_lines_ = 0.0;
   std::vector<double> left_, left_down_;  ///< N over √A: what the inertia left, all of it and along gravity
   std::vector<double> zero_, gradient_, force_;  ///< scratch
   std::vector<Vec2> at_vertices_;                ///< scratch

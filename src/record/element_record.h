@@ -34,14 +34,11 @@ struct ElementHistory {
 
 /// What an element carries at a moment (dynamics::Carried).
 struct ElementState {
-  Vec2 from, to;                                        ///< m, local
-  double force = 0.0, elongation = 0.0, yielded = 0.0;  ///< N per thickness, m, m
+  Vec2 from, to;                                                  ///< m, local
+  double force = 0.0, elongation = 0.0, yielded = 0.0;            ///< N per thickness, m, m
+  double moment = 0.0, shear = 0.0;                               ///< N m and N per thickness, of liners
+  double utilization = std::numeric_limits<double>::quiet_NaN();  ///< not a number: it has no limit
   bool present = false;
-
-  /// Force over the limit of its element; 0 without one.
-  [[nodiscard]] double utilization(const ElementDescription& of) const {
-    return (force < 0.0 ? -force : force) / of.limit;
-  }
 };
 
 /// The numbers of an element at a moment, as files have them.
@@ -53,13 +50,25 @@ struct ElementStateField {
 };
 inline constexpr ElementStateField element_state_fields[] = {
     {"force", "N/m",
-     "force per metre of thickness; of springs tension is positive, of all else it is the size of the "
-     "resultant",
+     "force per metre of thickness; of springs tension is positive, of liners too; of all else it is the "
+     "size "
+     "of the resultant",
      &ElementState::force},
     {"elongation", "m",
-     "since it was put in; of supports, boundaries and walls the mean way of what they hold",
+     "since it was put in; of supports, boundaries and walls the mean way of what they hold; of "
+     "liners the gap to the rock",
      &ElementState::elongation},
-    {"yielded", "m", "of the elongation, that does not come back", &ElementState::yielded}};
+    {"yielded", "m", "of the elongation, that does not come back; of liners the slip along the rock",
+     &ElementState::yielded},
+    {"moment", "N",
+     "moment per metre of thickness, of liners: positive where it stretches the side of the opening",
+     &ElementState::moment},
+    {"shear", "N/m", "shear force per metre of thickness, of liners", &ElementState::shear},
+    {"utilization", "",
+     "force over the limit; of liners the largest stress over its strength; not a number without one",
+     &ElementState::utilization}};
+/// Files of earlier versions do not have those from here on.
+inline constexpr std::size_t first_new_element_state = 3;
 /// Those that histories have.
 inline constexpr std::span element_history_fields = std::span(element_state_fields).first<2>();
 
@@ -78,10 +87,22 @@ struct ElementRecord {
   double spacing = std::numeric_limits<double>::infinity();
   double force_of_one = spacing, peak_force_of_one = spacing;
   bool ruptured = false;
+  double moment = 0.0, shear = 0.0;  ///< N m and N per thickness, of liners
+  /// Of liners, the largest in the run, and what they carried then: N, N m and N per thickness. Infinite: it is none that has a strength.
+  double worst_utilization = std::numeric_limits<double>::infinity();
+  double worst_force = worst_utilization, worst_moment = worst_utilization, worst_shear = worst_utilization;
 
+  [[nodiscard]] bool has_strength() const {
+    return worst_utilization < std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] bool has_limit() const {
+    return has_strength() || limit < std::numeric_limits<double>::infinity();
+  }
   /// Largest force over the limit; 0 without one.
-  [[nodiscard]] double utilization() const { return peak_force / limit; }
-  [[nodiscard]] bool has_yielded() const { return reaches_limit(peak_force, limit); }
+  [[nodiscard]] double utilization() const { return has_strength() ? worst_utilization : peak_force / limit; }
+  [[nodiscard]] bool has_yielded() const {
+    return has_strength() ? reaches_limit(worst_utilization, 1.0) : reaches_limit(peak_force, limit);
+  }
 };
 
 /// The numbers of an element as files have them.
@@ -90,14 +111,23 @@ struct ElementField {
   const char* unit;
   double ElementRecord::*number;
 };
-inline constexpr ElementField element_fields[] = {{"force_n_m", "N/m", &ElementRecord::force},
-                                                  {"elongation_m", "m", &ElementRecord::elongation},
-                                                  {"yielded_m", "m", &ElementRecord::yielded},
-                                                  {"peak_force_n_m", "N/m", &ElementRecord::peak_force},
-                                                  {"peak_time_s", "s", &ElementRecord::peak_time},
-                                                  {"limit_n_m", "N/m", &ElementRecord::limit},
-                                                  {"spacing_m", "m", &ElementRecord::spacing},
-                                                  {"force_n", "N", &ElementRecord::force_of_one},
-                                                  {"peak_force_n", "N", &ElementRecord::peak_force_of_one}};
+inline constexpr ElementField element_fields[] = {
+    {"force_n_m", "N/m", &ElementRecord::force},
+    {"elongation_m", "m", &ElementRecord::elongation},
+    {"yielded_m", "m", &ElementRecord::yielded},
+    {"peak_force_n_m", "N/m", &ElementRecord::peak_force},
+    {"peak_time_s", "s", &ElementRecord::peak_time},
+    {"limit_n_m", "N/m", &ElementRecord::limit},
+    {"spacing_m", "m", &ElementRecord::spacing},
+    {"force_n", "N", &ElementRecord::force_of_one},
+    {"peak_force_n", "N", &ElementRecord::peak_force_of_one},
+    {"moment_n", "N", &ElementRecord::moment},
+    {"shear_n_m", "N/m", &ElementRecord::shear},
+    {"worst_force_n_m", "N/m", &ElementRecord::worst_force},
+    {"worst_moment_n", "N", &ElementRecord::worst_moment},
+    {"worst_shear_n_m", "N/m", &ElementRecord::worst_shear},
+    {"worst_utilization", "", &ElementRecord::worst_utilization}};
+/// Files of earlier versions do not have those from here on.
+inline constexpr std::size_t first_new_element_field = 9;
 
 }  // namespace keyblock::record

@@ -122,7 +122,8 @@ void add_elements(const results::RunData& run, const std::vector<std::size_t>& c
     for (const record::ElementState& e : run.frames[f].elements) {
       add(ends, e.from);
       add(ends, e.to);
-      for (const auto& field : record::element_state_fields)
+      for (const auto& field :
+           std::span(record::element_state_fields).first<record::first_new_element_state>())
         numbers.push_back(static_cast<float>(e.*field.number));
       present.push_back(e.present ? 1 : 0);
     }

@@ -44,7 +44,7 @@ PageData make_page_data(const results::RunData& run);
 /// | history.time | f64 | rows | s |
 /// | element.reference | f32 | 4 n(elements) | ends before the run, x and y of both, m; not in runs without elements, as all of these |
 /// | element.ends | f32 | 4 n(elements) n(frames) | m |
-/// | element.numbers | f32 | 3 n(elements) n(frames) | record::element_state_fields of each |
+/// | element.numbers | f32 | 3 n(elements) n(frames) | the first three of record::element_state_fields of each |
 /// | element.present | u8 | n(elements) n(frames) | |
 /// | history.values | f32 | (1 + 9 n(points) + 2 n(element histories)) rows | by column: step; record::history_fields of each point; record::element_history_fields of each that follows an element |
 /// | step.step | f64 | rows | steps since the start of the run |

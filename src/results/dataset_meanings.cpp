@@ -255,7 +255,7 @@ std::vector<Meaning> of_elements(const record::ModelRecord& model) {
       {"element", "1", "number of the element"},
       {"end", "", "of elements"},
       {"elements/name", "", "names, as in summary.json"},
-      {"elements/kind", "", "what each is: spring, bolt, dowel, support, boundary, pressure, water"},
+      {"elements/kind", "", "what each is: spring, bolt, dowel, liner, support, boundary, pressure, water"},
       {"elements/limit", "N/m", "largest force that it can carry; infinite: none"},
       {"elements/spacing", "m",
        "out of plane, of which the section has one; infinite: it goes on through the section"},

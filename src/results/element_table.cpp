@@ -122,7 +122,9 @@ void ElementTable::read(hid_t file, std::size_t elements, std::vector<record::Fr
   const auto present = read_of_elements<std::uint8_t>(group, "present", elements);
   std::array<hdf5::Array<double>, numbers> columns;
   std::size_t rows = std::min({frames.size(), ends.rows(), present.rows()});
-  for (std::size_t n = 0; n < numbers; ++n) {
+  const bool is_new = H5Lexists(group, "utilization", H5P_DEFAULT) > 0;
+  const std::size_t known = is_new ? numbers : record::first_new_element_state;
+  for (std::size_t n = 0; n < known; ++n) {
     columns[n] = read_of_elements<double>(group, element_state_fields[n].name, elements);
     rows = std::min(rows, columns[n].rows());
   }
@@ -135,7 +137,7 @@ void ElementTable::read(hid_t file, std::size_t elements, std::vector<record::Fr
       e.from = {xy[0], xy[1]};
       e.to = {xy[2], xy[3]};
       e.present = present.values[at] != 0;
-      for (std::size_t n = 0; n < numbers; ++n) e.*element_state_fields[n].number = columns[n].values[at];
+      for (std::size_t n = 0; n < known; ++n) e.*element_state_fields[n].number = columns[n].values[at];
     }
   }
 }

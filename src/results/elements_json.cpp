@@ -70,7 +70,7 @@ ordered_json elements_json(const std::vector<ElementRecord>& elements, Vec2 orig
                      {"to", place(e.to + origin)}};
     for (const auto& field : element_fields) one[field.name] = number_or_null(e.*field.number);
     one["peak_stage"] = e.peak_stage.empty() ? ordered_json() : ordered_json(e.peak_stage);
-    one["utilization"] = std::isfinite(e.limit) ? ordered_json(e.utilization()) : ordered_json();
+    one["utilization"] = e.has_limit() ? ordered_json(e.utilization()) : ordered_json();
     one["has_yielded"] = e.has_yielded();
     one["has_ruptured"] = e.ruptured;
     json.push_back(std::move(one));
@@ -111,6 +111,7 @@ std::vector<ElementRecord> read_elements(const ordered_json& json) {
     e.from = read_place(one.at("from"));
     e.to = read_place(one.at("to"));
     for (const auto& field : element_fields) {
+      if (&field >= element_fields + record::first_new_element_field && !one.contains(field.name)) continue;
       const ordered_json& value = one.at(field.name);
       e.*field.number = value.is_null() ? HUGE_VAL : value.get<double>();
     }
@@ -144,7 +145,7 @@ std::string element_state_table(const RunData& run) {
   if (model.elements.empty()) return {};
   std::string text = "frame,time,stage,step,element,name,kind,present,from_x,from_y,to_x,to_y";
   for (const auto& field : element_state_fields) text += fmt::format(",{}", field.name);
-  text += ",utilization\n";
+  text += '\n';
   auto out = std::back_inserter(text);
   for (std::size_t f = 0; f < run.frames.size(); ++f) {
     const record::Frame& frame = run.frames[f];
@@ -154,8 +155,11 @@ std::string element_state_table(const RunData& run) {
       const Vec2 from = e.from + model.origin, to = e.to + model.origin;
       fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{}", f, frame.time, frame.stage, frame.step, k,
                      csv_field(of.name), of.kind, e.present ? 1 : 0, from.x, from.y, to.x, to.y);
-      for (const auto& field : element_state_fields) fmt::format_to(out, ",{}", e.*field.number);
-      text += std::isfinite(of.limit) ? fmt::format(",{}\n", e.utilization(of)) : ",\n";
+      for (const auto& field : element_state_fields) {
+        const double value = e.*field.number;
+        text += std::isnan(value) ? "," : fmt::format(",{}", value);
+      }
+      text += '\n';
     }
   }
   return text;

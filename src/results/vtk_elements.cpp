@@ -1,11 +1,9 @@
-#include <cmath>
-
 #include "results/vtk_parts.h"
 
 namespace keyblock::results {
 
 std::string vtk_elements(const record::ModelRecord& model, const record::Frame& frame) {
-  std::vector<double> points, utilization;
+  std::vector<double> points;
   std::vector<double> numbers[std::size(record::element_state_fields)];
   std::vector<std::int64_t> vertices, end;
   std::vector<std::int32_t> number;
@@ -18,8 +16,6 @@ std::string vtk_elements(const record::ModelRecord& model, const record::Frame& 
     }
     end.push_back(static_cast<std::int64_t>(vertices.size()));
     number.push_back(static_cast<std::int32_t>(k));
-    const record::ElementDescription& of = model.elements[k];
-    utilization.push_back(std::isfinite(of.limit) ? e.utilization(of) : std::nan(""));
     for (std::size_t n = 0; n < std::size(numbers); ++n)
       numbers[n].push_back(e.*record::element_state_fields[n].number);
   }
@@ -30,7 +26,6 @@ std::string vtk_elements(const record::ModelRecord& model, const record::Frame& 
   file.array("element", view(number));
   for (std::size_t n = 0; n < std::size(numbers); ++n)
     file.array(record::element_state_fields[n].name, view(numbers[n]));
-  file.array("utilization", view(utilization));
   file.close("CellData");
   file.open("Points");
   file.array("Points", view(points), 3);

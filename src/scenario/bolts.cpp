@@ -25,25 +25,10 @@ struct Part {
   [[nodiscard]] Vec2 outwards() const { return Vec2{to.y - from.y, from.x - to.x} / length(); }
 };
 
-/// In their order counter-clockwise from the start of the arc.
 std::vector<Part> parts_of(const BoltSpec& spec, const Ring& outline) {
-  const Vec2 centre = centroid(Polygon{outline, {}});
-  std::vector<std::pair<double, Part>> parts;  // by their angle from the start
-  for (std::size_t k = 0; k < outline.size(); ++k) {
-    const Vec2 a = outline[k], b = outline[(k + 1) % outline.size()];
-    if (a == b) continue;
-    if (!spec.arc) {
-      parts.emplace_back(static_cast<double>(k), Part{a, b});
-      continue;
-    }
-    for (const auto& [from, to] : simulation::within_arc({0.0, 1.0}, a, b, centre, *spec.arc))
-      parts.emplace_back(simulation::angle_in_arc(lerp(a, b, 0.5 * (from + to)) - centre, *spec.arc),
-                         Part{lerp(a, b, from), lerp(a, b, to)});
-  }
-  std::ranges::stable_sort(parts, {}, &std::pair<double, Part>::first);
-  std::vector<Part> all;
-  for (const auto& [angle, part] : parts) all.push_back(part);
-  return all;
+  std::vector<Part> parts;
+  for (const auto& [from, to] : sides_of(spec.arc, outline)) parts.push_back({from, to});
+  return parts;
 }
 
 /// Of a spacing: an outline of straight sides is a little shorter than the arc that it stands for, and has as many bolts.
@@ -175,6 +160,28 @@ void warn_of_strength_without_end(const loading::Bolt& bolt, const std::string& 
 }
 
 }  // namespace
+
+std::vector<std::pair<Vec2, Vec2>> sides_of(const std::optional<std::pair<double, double>>& arc,
+                                            const Ring& outline) {
+  using Side = std::pair<Vec2, Vec2>;
+  const Vec2 centre = centroid(Polygon{outline, {}});
+  std::vector<std::pair<double, Side>> sides;  // by their angle from the start
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vec2 a = outline[k], b = outline[(k + 1) % outline.size()];
+    if (a == b) continue;
+    if (!arc) {
+      sides.emplace_back(static_cast<double>(k), Side{a, b});
+      continue;
+    }
+    for (const auto& [from, to] : simulation::within_arc({0.0, 1.0}, a, b, centre, *arc))
+      sides.emplace_back(simulation::angle_in_arc(lerp(a, b, 0.5 * (from + to)) - centre, *arc),
+                         Side{lerp(a, b, from), lerp(a, b, to)});
+  }
+  std::ranges::stable_sort(sides, {}, &std::pair<double, Side>::first);
+  std::vector<Side> all;
+  for (const auto& [angle, side] : sides) all.push_back(side);
+  return all;
+}
 
 std::vector<std::pair<Vec2, Vec2>> pattern_of(const BoltSpec& spec, const Ring& outline) {
   const std::vector<Part> parts = parts_of(spec, outline);

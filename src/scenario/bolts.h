@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,10 @@
 
 /// Rock bolts of a scenario.
 namespace keyblock::scenario {
+
+/// The straight sides of an outline within an arc, in degrees about its centroid, or all: counter-clockwise from the start of the arc.
+std::vector<std::pair<Vec2, Vec2>> sides_of(const std::optional<std::pair<double, double>>& arc,
+                                            const Ring& outline);
 
 /// Head and toe of the bolts of a pattern, counter-clockwise along an outline, which is so: evenly, first and last at the ends of the arc;
 /// outwards, normal to the outline, at a corner between the normals of its edges.

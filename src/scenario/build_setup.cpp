@@ -15,6 +15,7 @@
 #include "scenario/joint_table.h"
 #include "scenario/joint_warnings.h"
 #include "scenario/key_path.h"
+#include "scenario/liners.h"
 #include "scenario/magnitudes.h"
 #include "scenario/motion_places.h"
 #include "scenario/own_joints.h"
@@ -87,6 +88,10 @@ void place_loading(const Scenario& scenario, const BlockModel& blocks, RunSetup&
     bolt.head -= origin;
     bolt.toe -= origin;
   }
+  setup.liners = liners_of(scenario, blocks.outlines);
+  for (loading::Liner& liner : setup.liners) {
+    for (Vec2& p : liner.wall) p -= origin;
+  }
   // What a stage installs that is left out never comes to life, and what is absent neither.
   for (const auto* stages : {&scenario.stages, &scenario.left_out})
     for (const record::Stage& stage : *stages)
@@ -99,6 +104,7 @@ void place_loading(const Scenario& scenario, const BlockModel& blocks, RunSetup&
   };
   for (loading::Spring& spring : setup.springs) spring.staged = staged(spring.name);
   for (loading::Bolt& bolt : setup.bolts) bolt.staged = staged(bolt.list);
+  for (loading::Liner& liner : setup.liners) liner.staged = staged(liner.name);
 }
 
 /// Rock far away goes from the base to the ground beside its side.
@@ -333,6 +339,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   place_histories(scenario, setup, notes);
   check_springs(scenario, setup, notes);
   check_bolts(scenario, setup, notes);
+  check_liners(scenario, setup, notes);
   if (auto mistakes = stage_mistakes(scenario, setup.motions); !mistakes.empty())
     throw InputError(std::move(mistakes));
   if (auto mistakes = dynamic_mistakes(scenario, setup); !mistakes.empty())

@@ -95,6 +95,7 @@ class Facts {
     if (!scenario_.supports.empty()) add("supports", std::to_string(scenario_.supports.size()));
     if (!scenario_.springs.empty()) add("springs", springs());
     for (const BoltSpec& spec : scenario_.bolts) bolts(spec);
+    for (const LinerSpec& spec : scenario_.liners) liner(spec);
     return std::move(facts_);
   }
 
@@ -158,11 +159,27 @@ class Facts {
     text += fmt::format(", {}, every {} m", bolt.is_anchored ? "anchored" : "grouted", number(bolt.spacing));
     text += bolt.yield ? fmt::format(", yield {} kN", number(*bolt.yield / 1e3)) : ", no yield";
     if (bolt.pretension > 0.0) text += fmt::format(", pretension {} kN", number(bolt.pretension / 1e3));
+    add(quoted("bolts", bolt.list), text + when_there(bolt.list));
+  }
+
+  void liner(const LinerSpec& spec) {
+    const loading::Liner& liner = spec.liner;
+    std::string text = fmt::format("{} m thick", number(liner.thickness));
+    if (spec.excavation >= 0)
+      text +=
+          fmt::format(" along “{}”", scenario_.excavations[static_cast<std::size_t>(spec.excavation)].name);
+    text += fmt::format(", adhesion {}, cohesion {}", pressure(liner.adhesion), pressure(liner.cohesion));
+    if (!liner.compressive_strength) text += ", no strength";
+    add(quoted("liner", liner.name), text + when_there(liner.name));
+  }
+
+  [[nodiscard]] std::string when_there(const std::string& name) const {
+    std::string text;
     for (const record::Stage& stage : scenario_.stages)
-      if (std::ranges::find(stage.install, bolt.list) != stage.install.end())
+      if (std::ranges::find(stage.install, name) != stage.install.end())
         text += fmt::format(", from “{}” on", stage.name);
-    if (std::ranges::find(scenario_.absent, bolt.list) != scenario_.absent.end()) text += ", not present";
-    add(quoted("bolts", bolt.list), std::move(text));
+    if (std::ranges::find(scenario_.absent, name) != scenario_.absent.end()) text += ", not present";
+    return text;
   }
 
   void water(const WaterSpec& spec) {

@@ -74,6 +74,7 @@ class LoadChecks {
     std::vector<std::string> there;
     for (const loading::Spring& spring : scenario_.springs) there.push_back(spring.name);
     for (const BoltSpec& spec : scenario_.bolts) there.push_back(spec.bolt.list);
+    for (const LinerSpec& spec : scenario_.liners) there.push_back(spec.liner.name);
     std::erase_if(there, [&](const std::string& name) {
       const auto installs = [&](const record::Stage& other) {
         return std::ranges::find(other.install, name) != other.install.end();

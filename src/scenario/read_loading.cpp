@@ -307,6 +307,7 @@ void read_loading(TableReader& root, Scenario& scenario) {
                   "excavated."},
       [&](TableReader& t, Spring& spring) { read_spring(t, spring, scenario); });
   read_bolts(root, scenario);
+  read_liners(root, scenario);
 }
 
 }  // namespace keyblock::scenario

@@ -46,13 +46,14 @@ void check_pretension(TableReader& t, const Stage& stage, const Scenario& scenar
   }
 }
 
-/// Supports of all kinds: springs and bolts.
+/// Supports of all kinds: springs, bolts and liners.
 void read_install(TableReader& t, Stage& stage, const Scenario& scenario) {
   std::vector<int> supports;
-  t.references("install", supports, names_of_supports,
-               {.meaning = "Supports that come to life at the start of the stage, after what it excavates: "
-                           "springs and bolts by their names. They have no force as the rock lies then, but "
-                           "pretension, and carry what comes later. Before, they are not there."});
+  t.references(
+      "install", supports, names_of_supports,
+      {.meaning = "Supports that come to life at the start of the stage, after what it excavates: "
+                  "springs, bolts and liners by their names. They have no force as the rock lies then, but "
+                  "pretension, and carry what comes later. Before, they are not there."});
   const std::vector<std::string>& names = t.context().list_names[std::string(names_of_supports)];
   for (const int k : supports) {
     const std::string& name = names[static_cast<std::size_t>(k)];

@@ -222,6 +222,13 @@ struct BoltSpec {
   std::optional<std::pair<double, double>> arc;  ///< degrees about the centroid of the outline, from +x
 };
 
+/// [[liner]]: shotcrete along the outline of an excavation, or along a polyline.
+struct LinerSpec {
+  loading::Liner liner;                          ///< wall: the polyline, of one that has it
+  int excavation = -1;                           ///< −1: along the polyline
+  std::optional<std::pair<double, double>> arc;  ///< degrees about the centroid of the outline, from +x
+};
+
 struct MotionComponentSpec {
   std::filesystem::path file;
   std::optional<int> channel;  ///< component of a file that holds several, counted from 1
@@ -313,6 +320,7 @@ struct Scenario {
   std::vector<loading::Support> supports;
   std::vector<loading::Spring> springs;
   std::vector<BoltSpec> bolts;
+  std::vector<LinerSpec> liners;
   std::vector<WaterSpec> waters;
   std::vector<simulation::History> histories;
   std::vector<record::Stage> stages;    ///< indices are those of `excavations` and `motions`

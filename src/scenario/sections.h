@@ -50,8 +50,10 @@ void read_boundary(TableReader& root, Scenario& scenario);
 void read_loading(TableReader& root, Scenario& scenario);
 /// `present` of a support, after its name: whether the run has it.
 void read_present(TableReader& t, const std::string& name, Scenario& scenario);
-/// [[bolt]], and the names of all that stages install.
+/// [[bolt]], and the names of springs and bolts for stages that install them.
 void read_bolts(TableReader& root, Scenario& scenario);
+/// [[liner]], likewise.
+void read_liners(TableReader& root, Scenario& scenario);
 /// [water], after all joints.
 void read_water(TableReader& root, Scenario& scenario);
 /// `water` of a stage.

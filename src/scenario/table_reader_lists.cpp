@@ -11,13 +11,13 @@ namespace {
 
 /// What a name of a list is the name of.
 std::string element_of(std::string_view list) {
-  if (list == names_of_supports) return "a [[spring]] or [[bolt]]";
+  if (list == names_of_supports) return "a [[spring]], [[bolt]] or [[liner]]";
   return list == names_of_joints ? "a joint set, trace map or interface, or \"joints\""
                                  : fmt::format("a [[{}]]", list);
 }
 
 std::string elements_of(std::string_view list) {
-  if (list == names_of_supports) return "[[spring]] and [[bolt]]";
+  if (list == names_of_supports) return "[[spring]], [[bolt]] and [[liner]]";
   return list == names_of_joints ? "joint sets, trace maps and interfaces, or \"joints\""
                                  : fmt::format("[[{}]]", list);
 }

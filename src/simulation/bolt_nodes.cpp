@@ -88,14 +88,6 @@ class BoltDivider {
   std::vector<Stretch> stretches_;
 };
 
-/// N of the bodies.
-int body_size(const RunSetup& setup) {
-  const bool is_order_2 = std::ranges::all_of(setup.properties, [](const BlockProperties& p) {
-    return p.fixed || (p.order == 2 && !p.automatic_order);
-  });
-  return is_order_2 ? 6 : 3;
-}
-
 /// Where node i is: which body of its bolt, and which node of it.
 std::pair<int, int> place_of_node(std::size_t i, int size) {
   const int node = static_cast<int>(i), group = node / (2 * size), in_group = node % (2 * size);
@@ -250,6 +242,13 @@ class NodeBoltBuilder {
 };
 
 }  // namespace
+
+int body_size(const RunSetup& setup) {
+  const bool is_order_2 = std::ranges::all_of(setup.properties, [](const BlockProperties& p) {
+    return p.fixed || (p.order == 2 && !p.automatic_order);
+  });
+  return is_order_2 ? 6 : 3;
+}
 
 double node_spacing(const Bolt& bolt) {
   const double by_grout = std::sqrt(bolt.bar() / bolt.grout_stiffness) / shares_of_decay;

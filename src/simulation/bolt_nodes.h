@@ -18,6 +18,9 @@ struct BoltNode {
   [[nodiscard]] double middle() const { return 0.5 * (from + to); }
 };
 
+/// N of the bodies of nodes: that of blocks of order 1, or of order 2 where all blocks have that.
+int body_size(const RunSetup& setup);
+
 /// m, the largest distance of nodes beside each other in one block: that of the bolt or, unless it has one, 1/(2α) of its grout, α = √(k_b/EA), no less
 /// than its diameter and 0.25 m at the most. Pull-out is within 0.3 % of continuous grout then.
 double node_spacing(const loading::Bolt& bolt);

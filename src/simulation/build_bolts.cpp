@@ -35,10 +35,10 @@ void add_crossings(const Ring& ring, Vec2 head, Vec2 axis, std::vector<double>& 
   }
 }
 
-/// The stage that installs a bolt, by index; −1: it is there from the start.
-std::ptrdiff_t installing_stage(const RunSetup& setup, const Bolt& bolt) {
-  if (bolt.staged < 0) return -1;
-  const std::string& name = setup.staged_supports[at(bolt.staged)];
+/// The stage that installs a support, by index; −1: it is there from the start.
+std::ptrdiff_t installing_stage(const RunSetup& setup, int staged) {
+  if (staged < 0) return -1;
+  const std::string& name = setup.staged_supports[at(staged)];
   const auto installs = [&](const record::Stage& stage) {
     return std::ranges::find(stage.install, name) != stage.install.end();
   };
@@ -55,6 +55,27 @@ bool is_gone(const RunSetup& setup, std::size_t block, std::ptrdiff_t installed)
   const Vec2 p = end + setup.system.origin;
   refuse(key, fmt::format("[{:.6g}, {:.6g}], in no rock", p.x, p.y),
          "a point of rock that is there when the bolt is installed");
+}
+
+/// axis: direction, of length 1.
+std::vector<BoltPiece> pieces_along(const RunSetup& setup, Vec2 from, Vec2 axis, double length, int staged) {
+  const std::ptrdiff_t installed = installing_stage(setup, staged);
+  std::vector<BoltPiece> pieces;
+  std::vector<double> places;
+  for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
+    if (is_gone(setup, b, installed)) continue;
+    const Polygon& polygon = setup.system.blocks[b].polygon;
+    places.clear();
+    add_crossings(polygon.outer, from, axis, places);
+    for (const Ring& hole : polygon.holes) add_crossings(hole, from, axis, places);
+    std::ranges::sort(places);
+    for (std::size_t i = 0; i + 1 < places.size(); i += 2) {
+      const BoltPiece piece{b, std::max(places[i], 0.0), std::min(places[i + 1], length)};
+      if (piece.length() > least_share * length) pieces.push_back(piece);
+    }
+  }
+  std::ranges::sort(pieces, {}, [](const BoltPiece& p) { return std::pair(p.from, p.block); });
+  return pieces;
 }
 
 class BoltBuilder {
@@ -127,26 +148,16 @@ class BoltBuilder {
 
 }  // namespace
 
+std::vector<BoltPiece> rock_along(const RunSetup& setup, Vec2 from, Vec2 to, int staged) {
+  const double length = norm(to - from);
+  return pieces_along(setup, from, (to - from) / length, length, staged);
+}
+
 std::vector<BoltPiece> bolt_pieces(const RunSetup& setup, std::size_t k) {
   const Bolt& bolt = setup.bolts[k];
   const double length = bolt.length();
-  const Vec2 axis = axis_of(bolt), head = bolt.head + aside_share * length * Vec2{-axis.y, axis.x};
-  const std::ptrdiff_t installed = installing_stage(setup, bolt);
-  std::vector<BoltPiece> pieces;
-  std::vector<double> places;
-  for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
-    if (is_gone(setup, b, installed)) continue;
-    const Polygon& polygon = setup.system.blocks[b].polygon;
-    places.clear();
-    add_crossings(polygon.outer, head, axis, places);
-    for (const Ring& hole : polygon.holes) add_crossings(hole, head, axis, places);
-    std::ranges::sort(places);
-    for (std::size_t i = 0; i + 1 < places.size(); i += 2) {
-      const BoltPiece piece{b, std::max(places[i], 0.0), std::min(places[i + 1], length)};
-      if (piece.length() > least_share * length) pieces.push_back(piece);
-    }
-  }
-  std::ranges::sort(pieces, {}, [](const BoltPiece& p) { return std::pair(p.from, p.block); });
+  const Vec2 axis = axis_of(bolt), aside = aside_share * length * Vec2{-axis.y, axis.x};
+  std::vector<BoltPiece> pieces = pieces_along(setup, bolt.head + aside, axis, length, bolt.staged);
   const std::string key = fmt::format("bolt[{}]", k);
   if (pieces.empty() || pieces.front().from > end_share * length) refuse_end(setup, key + ".from", bolt.head);
   if (pieces.back().to < (1.0 - end_share) * length) refuse_end(setup, key + ".to", bolt.toe);

@@ -9,6 +9,9 @@
 /// Rock bolts in the blocks that they cross: springs between points (dynamics::PointSpring).
 namespace keyblock::simulation {
 
+/// The blocks along a straight line that are there when a stage installs what lies on it (State::installed; −1: from the start), m from its start.
+std::vector<BoltPiece> rock_along(const RunSetup& setup, Vec2 from, Vec2 to, int staged);
+
 /// The rock along bolt k, from its head to its toe, that is there when it is installed, where blocks are before the run. Of two blocks that meet along
 /// the bolt one has it. Throws InputError, with the key of the end, where head or toe are in no rock.
 std::vector<BoltPiece> bolt_pieces(const RunSetup& setup, std::size_t k);

@@ -16,6 +16,7 @@
 #include "simulation/bolt_nodes.h"
 #include "simulation/build_bolts.h"
 #include "simulation/build_boundary.h"
+#include "simulation/build_liners.h"
 #include "simulation/build_water.h"
 #include "simulation/joint_laws.h"
 #include "simulation/outline.h"
@@ -191,6 +192,7 @@ void add_springs(const RunSetup& setup, Model& model) {
 void add_couplings(const RunSetup& setup, Model& model) {
   add_supports(setup, model);
   add_springs(setup, model);
+  if (auto liners = liner_coupling(setup, model)) model.couplings.push_back(std::move(liners));
   if (setup.boundary) {
     model.couplings.push_back(build_boundary(setup, model));
   } else if (auto damping = mass_damping(model)) {
@@ -277,6 +279,7 @@ Model build_model(const RunSetup& setup) {
     joints.insert(joints.end(), 8, 1);
   }
   model.lines = bolt_lines(setup);
+  add_liner_lines(setup, model.lines);
   number_coefficients(model);
   build_surface(model, joints);
   find_seams(model);

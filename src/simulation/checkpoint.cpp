@@ -16,7 +16,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'001c;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'001d;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;

@@ -266,7 +266,7 @@ bool are_overlaps(const record::RunRecord& record, std::size_t blocks) {
 bool are_peaks(const std::vector<ElementPeak>& peaks, const RunSetup& setup, const Model& model) {
   return (peaks.empty() || peaks.size() == element_count(model)) &&
          std::ranges::all_of(peaks, [&](const ElementPeak& p) {
-           return std::isfinite(p.force) && p.force >= 0.0 && std::isfinite(p.time) &&
+           return std::isfinite(p.force) && p.force >= 0.0 && std::isfinite(p.time) && p.utilization >= 0.0 &&
                   (p.stage == -1 || is_place(static_cast<int>(p.stage), setup.stages.size()));
          });
 }

@@ -53,10 +53,12 @@ void measure_elements(const Model& model, const State& state, const std::vector<
   damage.largest_utilization = std::nan("");
   const std::vector<record::ElementDescription> all = element_descriptions(model);
   for (std::size_t k = 0; k < all.size(); ++k) {
-    if (!std::isfinite(all[k].limit)) continue;
-    const double peak = k < peaks.size() ? peaks[k].force : 0.0;
-    damage.yielded_elements += record::reaches_limit(peak, all[k].limit) ? 1 : 0;
-    damage.largest_utilization = std::fmax(damage.largest_utilization, peak / all[k].limit);
+    const ElementPeak peak = k < peaks.size() ? peaks[k] : ElementPeak{};
+    const bool has_limit = std::isfinite(all[k].limit);
+    if (!has_limit && peak.utilization == 0.0) continue;
+    const double utilization = has_limit ? peak.force / all[k].limit : peak.utilization;
+    damage.yielded_elements += record::reaches_limit(utilization, 1.0) ? 1 : 0;
+    damage.largest_utilization = std::fmax(damage.largest_utilization, utilization);
   }
 }
 
@@ -79,9 +81,21 @@ bool may_rupture(const Model& model) {
 
 std::vector<record::ElementState> element_states(const Model& model, const State& state) {
   std::vector<record::ElementState> all;
-  for_carried(model, state, [&](const auto& /*coupling*/, const std::vector<Carried>& carried) {
-    for (const Carried& c : carried)
-      all.push_back({c.from, c.to, c.force, c.elongation, c.yielded, c.present});
+  for_carried(model, state, [&](const auto& coupling, const std::vector<Carried>& carried) {
+    const std::vector<dynamics::Element> elements = coupling.elements();
+    for (std::size_t i = 0; i < carried.size(); ++i) {
+      const Carried& c = carried[i];
+      all.push_back({.from = c.from,
+                     .to = c.to,
+                     .force = c.force,
+                     .elongation = c.elongation,
+                     .yielded = c.yielded,
+                     .moment = c.moment,
+                     .shear = c.shear,
+                     .utilization = std::isfinite(elements[i].limit) ? std::abs(c.force) / elements[i].limit
+                                                                     : c.utilization,
+                     .present = c.present});
+    }
   });
   return all;
 }
@@ -118,7 +132,17 @@ std::vector<int> keep_peaks(const Model& model, const State& state, int stage,
     for (std::size_t i = 0; i < carried.size(); ++i, ++k) {
       const Carried& one = carried[i];
       ElementPeak& peak = peaks[k];
-      if (std::abs(one.force) > peak.force) peak = {std::abs(one.force), state.time, stage, peak.ruptured};
+      if (std::abs(one.force) > peak.force) {
+        peak.force = std::abs(one.force);
+        peak.time = state.time;
+        peak.stage = stage;
+      }
+      if (one.utilization > peak.utilization) {
+        peak.utilization = one.utilization;
+        peak.worst_force = one.force;
+        peak.worst_moment = one.moment;
+        peak.worst_shear = one.shear;
+      }
       if (!one.ruptured || peak.ruptured != 0) continue;
       peak.ruptured = 1;
       if (coupling.elements()[i].may_rupture) ruptured.push_back(static_cast<int>(k));
@@ -153,7 +177,15 @@ std::vector<record::ElementRecord> element_records(const Model& model, const Sta
            .spacing = spacing,
            .force_of_one = std::isfinite(spacing) ? now.force * spacing : HUGE_VAL,
            .peak_force_of_one = std::isfinite(spacing) ? peak.force * spacing : HUGE_VAL,
-           .ruptured = now.ruptured});
+           .ruptured = now.ruptured,
+           .moment = now.moment,
+           .shear = now.shear});
+      if (std::isnan(now.utilization) && peak.utilization == 0.0) continue;
+      record::ElementRecord& one = records.back();
+      one.worst_utilization = peak.utilization;
+      one.worst_force = peak.worst_force;
+      one.worst_moment = peak.worst_moment;
+      one.worst_shear = peak.worst_shear;
     }
   });
   return records;

@@ -18,6 +18,8 @@ struct ElementPeak {
   double time = 0.0;          ///< s
   std::int64_t stage = -1;    ///< −1: it has carried nothing
   std::int64_t ruptured = 0;  ///< 1: it has
+  double utilization = 0.0;  ///< of what has limits other than a force, the largest, and what it carried then
+  double worst_force = 0.0, worst_moment = 0.0, worst_shear = 0.0;
 };
 
 /// After a step of a stage. The elements that ruptured in it, but for those that go with another one.

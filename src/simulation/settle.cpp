@@ -129,7 +129,7 @@ bool Settler::step(dynamics::Stepper& stepper, dynamics::State& state, dynamics:
   const bool news = moving_.go(balance, stepper.travel(), tolerance_);
   memory_.worst_ratio = 0.0;
   double worst_predicted = 0.0;
-  bool all_balance = report.converged;
+  bool all_balance = report.converged && balance.left_of_lines() <= tolerance_;
   const auto counts = [&](std::size_t b) { return model_.moves(b) && !moving_.moves(b); };
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!counts(b)) continue;
@@ -141,6 +141,7 @@ bool Settler::step(dynamics::Stepper& stepper, dynamics::State& state, dynamics:
   ++memory_.steps;
   control(report, worst_predicted);
   control_inertia(stepper.travel());
+  memory_.worst_ratio = std::max(memory_.worst_ratio, balance.left_of_lines());
   if (news) begin_again();
   report.iterations += tried;
   memory_.quiet_steps = all_balance ? memory_.quiet_steps + 1 : 0;

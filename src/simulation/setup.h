@@ -10,6 +10,7 @@
 #include "cutting/block_system.h"
 #include "loading/bolt.h"
 #include "loading/ground_motion.h"
+#include "loading/liner.h"
 #include "loading/load.h"
 #include "loading/water_table.h"
 #include "model/options.h"
@@ -157,6 +158,7 @@ struct RunSetup {
   std::vector<loading::Support> supports;
   std::vector<loading::Spring> springs;
   std::vector<loading::Bolt> bolts;
+  std::vector<loading::Liner> liners;
   std::vector<Water> waters;                 ///< of which a stage chooses
   std::vector<std::string> staged_supports;  ///< that stages install: names, in the order of State::installed
   std::vector<record::Stage> stages;

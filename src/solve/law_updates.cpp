@@ -219,8 +219,13 @@ bool LawUpdates::change_couplings(const StepSystem& system, Iterate& iterate) {
   if (events == 0 && limit_updates_++ < step_numbers::most_limit_updates) count = changes_.size();
   for (std::size_t i = 0; i < count; ++i) {
     const LawChange& change = changes_[i];
-    iterate.change_spring(system, change.row,
-                          [&] { system.springs().set_limits(change.row, change.least, change.largest); });
+    iterate.change_spring(system, change.row, [&] {
+      SpringArray& springs = system.springs();
+      springs.set_limits(change.row, change.least, change.largest);
+      if (change.friction < 0.0) return;
+      springs.low[change.row] = 0.0;
+      springs.friction[change.row] = change.friction;
+    });
   }
   return count > 0;
 }

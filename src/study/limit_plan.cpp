@@ -73,11 +73,15 @@ void check_measure(const LimitRequest& request, const scenario::Scenario& scenar
   const auto gives_way = [](const scenario::BoltSpec& spec) {
     return spec.bolt.yield || spec.bolt.grout_strength || spec.bolt.dowel_strength;
   };
-  if (std::ranges::any_of(scenario.springs, yields) || std::ranges::any_of(scenario.bolts, gives_way)) return;
+  const auto has_strength = [](const scenario::LinerSpec& spec) { return spec.liner.strength().has_value(); };
+  if (std::ranges::any_of(scenario.springs, yields) || std::ranges::any_of(scenario.bolts, gives_way) ||
+      std::ranges::any_of(scenario.liners, has_strength))
+    return;
   record::for_damage_fields([&](const auto& field) {
     if (request.criterion.measure == field.name && field.column.table == record::DamageTable::elements)
       refuse("--until", '"' + request.criterion.measure + '"',
-             "a measure that the scenario has: no [[spring]] or [[bolt]] has a yield");
+             "a measure that the scenario has: no [[spring]] or [[bolt]] has a yield, and no [[liner]] "
+             "strengths");
   });
 }
 
