@@ -227,6 +227,15 @@ std::string most_loaded_of(std::string_view kind, std::span<const record::Elemen
   std::string text = fmt::format("most loaded {}: {}, {:.4g} kN/m in \"{}\"", kind, most->name,
                                  most->peak_force / 1e3, most->peak_stage);
   if (std::isfinite(most->limit)) text += fmt::format(", {:.0f} % of its limit", 100.0 * most->utilization());
+  // Stations of a liner have a strength of the section in the place of a limit of the force.
+  if (kind == "liner") {
+    const long off = std::ranges::count_if(
+        elements, [&](const record::ElementRecord& e) { return e.kind == kind && e.ruptured; });
+    if (most->utilization() > 0.0)
+      text += fmt::format(", largest stress {:.0f} % of the strength", 100.0 * most->utilization());
+    if (off > 0) text += fmt::format("; rock has come off at {} of {} stations", off, count);
+    return text + "\n";
+  }
   if (yielded > 0) text += fmt::format("; {} of {} {}s have reached theirs", yielded, count, kind);
   return text + "\n";
 }

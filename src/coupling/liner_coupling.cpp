@@ -38,6 +38,29 @@ Vec2 turned(Vec2 v, Vec2 before, Vec2 now) {
   return {c * v.x - s * v.y, s * v.x + c * v.y};
 }
 
+/// The nearest station with rock on one side, and m to it; −1: there is none.
+std::pair<int, double> nearest_rock(std::span<const LinerStation> stations, std::size_t s,
+                                    int LinerStation::*next, const LinerWay& way) {
+  double far = 0.0;
+  for (int k = stations[s].*next; k >= 0 && at(k) != s; k = stations[at(k)].*next) {
+    far = norm(stations[at(k)].wall - stations[s].wall);
+    if (way.known[at(k)] > 0.0) return {k, far};
+  }
+  return {-1, far};
+}
+
+/// A station without rock: between those that have it, or with the only one.
+void go_between(std::span<const LinerStation> stations, std::size_t s, LinerWay& way) {
+  auto [a, to_a] = nearest_rock(stations, s, &LinerStation::before, way);
+  auto [b, to_b] = nearest_rock(stations, s, &LinerStation::after, way);
+  if (a < 0) std::tie(a, to_a) = std::pair(b, to_b);
+  if (b < 0) std::tie(b, to_b) = std::pair(a, to_a);
+  if (a < 0) return;
+  const double share = to_a / (to_a + to_b);
+  way.moved[s] = lerp(way.moved[at(a)], way.moved[at(b)], share);
+  way.velocity[s] = lerp(way.velocity[at(a)], way.velocity[at(b)], share);
+}
+
 }  // namespace
 
 LinerCoupling::LinerCoupling(std::vector<loading::Liner> liners, std::vector<LinerStation> stations,
@@ -258,53 +281,40 @@ void LinerCoupling::place(const Model& model, State& state) const {
     put(model, state, s, stations_[s].wall, stations_[s].out, {});
 }
 
-/// Stations go where their rock is; those without rock between those that have it.
-void LinerCoupling::put_all(const Model& model, State& state, std::span<const std::uint8_t> is_put) const {
-  const std::size_t n = stations_.size();
-  std::vector<Vec2> moved(n), velocity(n);
-  std::vector<double> known(n, 0.0);
+LinerWay LinerCoupling::way_of_rock(const Model& model, const State& state,
+                                    std::span<const std::uint8_t> is_put) const {
+  LinerWay way{std::vector<double>(stations_.size(), 0.0), std::vector<Vec2>(stations_.size()),
+               std::vector<Vec2>(stations_.size())};
   for (std::size_t l = 0; l < links_.size(); ++l) {
     const std::size_t s = links_[l].station;
     if (is_put[s] == 0 || model.surface.present[at(links_[l].rock.block)] == 0) continue;
-    known[s] += links_[l].length;
-    moved[s] += links_[l].length * (place_of(model, state.position, rock_of(l)) - stations_[s].wall);
-    velocity[s] += links_[l].length * place_of(model, state.velocity, rock_of(l));
+    way.known[s] += links_[l].length;
+    way.moved[s] += links_[l].length * (place_of(model, state.position, rock_of(l)) - stations_[s].wall);
+    way.velocity[s] += links_[l].length * place_of(model, state.velocity, rock_of(l));
   }
+  for (std::size_t s = 0; s < stations_.size(); ++s) {
+    if (way.known[s] <= 0.0) continue;
+    way.moved[s] = way.moved[s] / way.known[s];
+    way.velocity[s] = way.velocity[s] / way.known[s];
+  }
+  return way;
+}
+
+/// Stations go where their rock is; those without rock between those that have it.
+void LinerCoupling::put_all(const Model& model, State& state, std::span<const std::uint8_t> is_put) const {
+  const std::size_t n = stations_.size();
+  LinerWay way = way_of_rock(model, state, is_put);
   for (std::size_t s = 0; s < n; ++s) {
-    if (known[s] <= 0.0) continue;
-    moved[s] = moved[s] / known[s];
-    velocity[s] = velocity[s] / known[s];
+    if (way.known[s] <= 0.0 && is_put[s] != 0) go_between(stations_, s, way);
   }
-  // The nearest station with rock, and m to it; −1: there is none.
-  const auto nearest = [&](std::size_t s, int LinerStation::*next) {
-    double way = 0.0;
-    for (int k = stations_[s].*next; k >= 0 && at(k) != s; k = stations_[at(k)].*next) {
-      way += norm(stations_[at(k)].wall - stations_[s].wall);
-      if (known[at(k)] > 0.0) return std::pair(k, way);
-    }
-    return std::pair(-1, way);
-  };
   std::vector<Vec2> wall(n);
-  for (std::size_t s = 0; s < n; ++s) {
-    if (known[s] <= 0.0 && is_put[s] != 0) {
-      auto [a, to_a] = nearest(s, &LinerStation::before);
-      auto [b, to_b] = nearest(s, &LinerStation::after);
-      if (a < 0) std::tie(a, to_a) = std::pair(b, to_b);
-      if (b < 0) std::tie(b, to_b) = std::pair(a, to_a);
-      if (a >= 0) {
-        const double share = to_a / (to_a + to_b);
-        moved[s] = lerp(moved[at(a)], moved[at(b)], share);
-        velocity[s] = lerp(velocity[at(a)], velocity[at(b)], share);
-      }
-    }
-    wall[s] = stations_[s].wall + moved[s];
-  }
+  for (std::size_t s = 0; s < n; ++s) wall[s] = stations_[s].wall + way.moved[s];
   for (std::size_t s = 0; s < n; ++s) {
     if (is_put[s] == 0) continue;
     const std::size_t a = stations_[s].before < 0 ? s : at(stations_[s].before),
                       b = stations_[s].after < 0 ? s : at(stations_[s].after);
     put(model, state, s, wall[s],
-        turned(stations_[s].out, stations_[b].wall - stations_[a].wall, wall[b] - wall[a]), velocity[s]);
+        turned(stations_[s].out, stations_[b].wall - stations_[a].wall, wall[b] - wall[a]), way.velocity[s]);
   }
 }
 

@@ -13,6 +13,12 @@
 
 namespace keyblock::dynamics {
 
+/// How far the wall behind each station of liners has gone since before the run.
+struct LinerWay {
+  std::vector<double> known;  ///< m of wall that it is known of; 0: there is no rock
+  std::vector<Vec2> moved, velocity;
+};
+
 /// A cross-section of a liner: two nodes of a line body, the outer one `outer` and the inner one after it, t/√3 from the centre line. They are where a beam
 /// has the chords of its truss, and not its faces.
 struct LinerStation {
@@ -142,6 +148,9 @@ class LinerCoupling final : public Coupling, public StagedSupports {
   [[nodiscard]] double link_energy(std::size_t link, Way way, Bond bond) const;
   [[nodiscard]] SpringArray::Force link_force(std::size_t link, Way way, Bond bond) const;
   void put(const Model& model, State& state, std::size_t station, Vec2 wall, Vec2 out, Vec2 velocity) const;
+  /// Of stations with rock.
+  [[nodiscard]] LinerWay way_of_rock(const Model& model, const State& state,
+                                     std::span<const std::uint8_t> is_put) const;
   void put_all(const Model& model, State& state, std::span<const std::uint8_t> is_put) const;
   void account_for_bar(const Attempt& attempt, std::size_t first, std::size_t bar,
                        std::span<const double> memory, State& state) const;

@@ -64,7 +64,7 @@ inline constexpr ElementStateField element_state_fields[] = {
      "moment per metre of thickness, of liners: positive where it stretches the side of the opening",
      &ElementState::moment},
     {"shear", "N/m", "shear force per metre of thickness, of liners", &ElementState::shear},
-    {"utilization", "",
+    {"utilization", "1",
      "force over the limit; of liners the largest stress over its strength; not a number without one",
      &ElementState::utilization}};
 /// Files of earlier versions do not have those from here on.

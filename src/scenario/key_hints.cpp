@@ -13,7 +13,7 @@
 namespace keyblock::scenario {
 namespace {
 
-constexpr std::size_t most_sections = 5;  // that are named as those a key belongs to
+constexpr std::size_t most_sections = 7;  // that are named as those a key belongs to
 
 /// A word as the tables of synonyms have it.
 std::string plain(std::string_view word) {

@@ -91,6 +91,7 @@ constexpr Synonym all_synonyms[] = {
     {"pressure", "traction"},
     {"supports", "support"},
     {"springs", "spring"},
+    {"liners lining linings shotcrete", "liner"},
     {"bolts rockbolt rockbolts anchor anchors cable cables dowel dowels", "bolt"},
     {"loads", "load"},
     {"hist monitor", "history", true},
@@ -111,8 +112,7 @@ constexpr Synonym all_synonyms[] = {
 };
 
 constexpr Explanation all_explanations[] = {
-    {"liner liners lining linings shotcrete beam beams struct steelset steelsets",
-     "linings and beams are not in the program"},
+    {"beam beams struct steelset steelsets", "steel sets are not in the program; [[liner]] is shotcrete"},
     {"flow seepage permeability conductivity aperture",
      "flow of water in joints is not in the program; [water] is water at rest, below a table"},
     {"dilation dilatancy dilationangle jdil jdilation psi", "dilation of joints is not in the program"},

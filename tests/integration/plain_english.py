@@ -22,6 +22,7 @@ PAGES = [
     "docs/guide/drawings.md",
     "docs/guide/joints.md",
     "docs/guide/limits.md",
+    "docs/guide/liners.md",
     "docs/guide/pictures.md",
     "docs/guide/loads.md",
     "docs/guide/results.md",

@@ -46,9 +46,16 @@ void add_elements(keyblock::results::RunData& data) {
                     {"boundary.base", "boundary", HUGE_VAL, {box.min.x, 0.0}, {box.max.x, 0.0}, -1, -1}};
   model.element_histories = {{"load cell", 0}};
   const auto at = [&](double share, bool present) {
-    return std::vector<ElementState>{
-        {{2.0, 2.5 - 0.1 * share}, {2.0, 4.5}, 8e4 * share, 0.1 * share, 0.0, present},
-        {{box.min.x, 0.0}, {box.max.x, 0.0}, 2e6, 1e-3, 0.0, true}};
+    return std::vector<ElementState>{{.from = {2.0, 2.5 - 0.1 * share},
+                                      .to = {2.0, 4.5},
+                                      .force = 8e4 * share,
+                                      .elongation = 0.1 * share,
+                                      .present = present},
+                                     {.from = {box.min.x, 0.0},
+                                      .to = {box.max.x, 0.0},
+                                      .force = 2e6,
+                                      .elongation = 1e-3,
+                                      .present = true}};
   };
   for (std::size_t f = 0; f < data.frames.size(); ++f) {
     const double share = static_cast<double>(f + 1) / static_cast<double>(data.frames.size());

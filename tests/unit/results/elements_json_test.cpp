@@ -45,9 +45,11 @@ TEST(ElementsJson, IsReadAgain) {
 TEST(ElementsJson, TableHasTheSame) {
   EXPECT_EQ(element_table(two(), {100.0, 0.0}),
             "name,kind,present,from_x,from_y,to_x,to_y,force_n_m,elongation_m,yielded_m,peak_force_n_m,"
-            "peak_time_s,limit_n_m,spacing_m,force_n,peak_force_n,peak_stage\n"
-            "\"bolt, 1\",bolt,1,101,2,101,5,-3000,0,0,8000,1.5,10000,1.5,-4500,12000,shaking\n"
-            "support[0],support,0,100,0,100,0,0,0,0,0,0,,,,,\n");
+            "peak_time_s,limit_n_m,spacing_m,force_n,peak_force_n,moment_n,shear_n_m,worst_force_n_m,worst_"
+            "moment_n,"
+            "worst_shear_n_m,worst_utilization,peak_stage\n"
+            "\"bolt, 1\",bolt,1,101,2,101,5,-3000,0,0,8000,1.5,10000,1.5,-4500,12000,0,0,,,,,shaking\n"
+            "support[0],support,0,100,0,100,0,0,0,0,0,0,,,,,0,0,,,,,\n");
   EXPECT_EQ(element_table({}, {}), "");
 }
 

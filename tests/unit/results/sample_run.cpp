@@ -300,12 +300,15 @@ record::Frame SampleRun::frame(int stage, long step) {
     frame.order.push_back(static_cast<std::int16_t>(1 + (step + k) % 300));
   }
   for (int k = 0; k < static_cast<int>(model.elements.size()); ++k) {
-    frame.elements.push_back({{noise(step, 400 + k), noise(step, 410 + k)},
-                              {noise(step, 420 + k), 0.1 / 3.0},
-                              noise(step, 430 + k),
-                              noise(step, 440 + k),
-                              noise(step, 450 + k),
-                              (step + k) % 3 != 0});
+    frame.elements.push_back({.from = {noise(step, 400 + k), noise(step, 410 + k)},
+                              .to = {noise(step, 420 + k), 0.1 / 3.0},
+                              .force = noise(step, 430 + k),
+                              .elongation = noise(step, 440 + k),
+                              .yielded = noise(step, 450 + k),
+                              .moment = noise(step, 460 + k),
+                              .shear = noise(step, 470 + k),
+                              .utilization = noise(step, 480 + k),
+                              .present = (step + k) % 3 != 0});
   }
   return frame;
 }

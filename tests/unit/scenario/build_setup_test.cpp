@@ -171,9 +171,10 @@ TEST(BuildSetup, AStageInstallsSupports) {
   const auto refused = [&](const std::vector<std::string>& overrides) {
     return mistakes(runnable_domain + springs, overrides);
   };
-  EXPECT_THAT(refused({"stage.supported.install=['secnd']"}),
-              HasSubstr("stage.supported.install[0]: found the string \"secnd\"; expected the name of a "
-                        "[[spring]] or [[bolt]]: \"first\" or \"second\"; did you mean 'second'?"));
+  EXPECT_THAT(
+      refused({"stage.supported.install=['secnd']"}),
+      HasSubstr("stage.supported.install[0]: found the string \"secnd\"; expected the name of a "
+                "[[spring]], [[bolt]] or [[liner]]: \"first\" or \"second\"; did you mean 'second'?"));
   EXPECT_THAT(refused({"stage.supported.install=['second', 'second']"}),
               HasSubstr("again; expected every name once"));
   EXPECT_THAT(refused({"stage.settled.install=['second']"}),

@@ -59,9 +59,10 @@ TEST(KeyHints, OfWordsOfOtherPrograms) {
 TEST(KeyHints, OfKeysThatBelongElsewhere) {
   expect_hints(
       {{"rock.kn=1",
-        "'normal_stiffness' belongs to [joints], [[joint_set]], [[trace_map]], [rock_bridge], [[interface]]"},
+        "'normal_stiffness' belongs to [joints], [[joint_set]], [[trace_map]], [rock_bridge], [[interface]], "
+        "[[liner]]"},
        {"rock.dt=1", "'step' belongs to [time]"},
-       {"E=1", "'young' belongs to [rock], [[region]], [[block]], [[block_map]], [[bolt]]"},
+       {"E=1", "'young' belongs to [rock], [[region]], [[block]], [[block_map]], [[bolt]], [[liner]]"},
        {"rock.units=1", "'units' belongs to the top of the file"},
        {"K0=1", "'k0' belongs to [in_situ]"},
        {"rock.fault=1", "[[trace_map]] is the table for that"},
@@ -74,7 +75,8 @@ TEST(KeyHints, OfWhatTheProgramHasNot) {
         "strength_factor of [joints] divides their strength; keyblock limit finds the factor of "
         "safety by --key "
         "joints.strength_factor"},
-       {"liner=1", "linings and beams are not in the program"},
+       {"steelset=1", "steel sets are not in the program; [[liner]] is shotcrete"},
+       {"lining=1", "did you mean 'liner'?"},
        {"flow=1", "flow of water in joints is not in the program; [water] is water at rest, below a table"},
        {"groundwater=1", "did you mean 'water'?"},
        {"joints.dilation=1", "dilation of joints is not in the program"}});
