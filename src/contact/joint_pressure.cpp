@@ -169,7 +169,8 @@ void JointPressure::for_closed_points(std::span<const double> y, const OfPoint& 
     }
   };
   if (pulls_) return add(0.0, 1.0);
-  for (const Part& part : ClosedParts(*points_, y).parts()) add(part.from, part.to);
+  const ClosedParts closed(*points_, y);
+  for (const Part& part : closed.parts()) add(part.from, part.to);
 }
 
 void JointPressure::forces(std::span<const double> y, std::span<double> force) const {
