@@ -65,7 +65,11 @@ std::string aligned(const std::vector<Row>& rows) {
     for (std::size_t c = 0; c < table_columns; ++c) {
       const std::string cell = c == 0 ? one_line(r[c], width[c], true) : r[c];
       const std::string padding(static_cast<std::size_t>(width[c] - column_count(cell)), ' ');
-      text += c == 0 ? cell + padding : "  " + padding + cell;
+      if (c == 0) {
+        text.append(cell).append(padding);
+      } else {
+        text.append("  ").append(padding).append(cell);
+      }
     }
     text += '\n';
   }

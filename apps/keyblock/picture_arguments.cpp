@@ -16,7 +16,7 @@
 namespace keyblock::app {
 namespace {
 
-CLI::Validator one_of(std::vector<std::string> words) {
+CLI::Validator one_of(const std::vector<std::string>& words) {
   return {[words](std::string& value) {
             for (const std::string& word : words)
               if (word == value) return std::string();
